@@ -1,0 +1,99 @@
+"""What an IMU said: the only thing that navigation ever sees, simulated or real."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from footfall.errors import InputError
+from footfall.tables import read_table, require_columns, write_table
+
+GYRO = ("gyro_x", "gyro_y", "gyro_z")
+ACCEL = ("accel_x", "accel_y", "accel_z")
+UNITS = {
+    "t": "s",
+    **{name: "rad/s" for name in GYRO},
+    **{name: "m/s2" for name in ACCEL},
+    "temperature": "degC",
+}
+
+
+@dataclass(frozen=True)
+class Recording:
+    """IMU samples in the body frame (x forward, y left, z up when level).
+
+    Attributes
+    ----------
+    t : (n,) s, from the first sample; each stamp ends its sampling interval
+    gyro : (n, 3) rad/s
+    accel : (n, 3) m/s2, specific force: +g upwards at rest
+    temperature : (n,) degC, or None where the sensor reports none
+    meta : provenance (scenario, seeds, versions)
+    """
+
+    t: np.ndarray
+    gyro: np.ndarray
+    accel: np.ndarray
+    temperature: np.ndarray | None = None
+    meta: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        n = len(self.t)
+        if n < 2:
+            raise InputError(f"recording: {n} samples, expected at least 2")
+        for name in ("gyro", "accel"):
+            if getattr(self, name).shape != (n, 3):
+                raise InputError(f"recording: {name} has shape {getattr(self, name).shape}, expected ({n}, 3)")
+        if self.temperature is not None and self.temperature.shape != (n,):
+            raise InputError(f"recording: temperature has shape {self.temperature.shape}, expected ({n},)")
+        for name in ("t", "gyro", "accel", "temperature"):
+            values = getattr(self, name)
+            if values is not None and not np.isfinite(values).all():
+                row = int(np.argwhere(~np.isfinite(values))[0][0])
+                raise InputError(f"recording: {name} is not finite at row {row}")
+        step = np.diff(self.t)
+        if (step <= 0).any():
+            row = int(np.argmax(step <= 0)) + 1
+            raise InputError(f"recording: t does not increase at row {row} (t = {self.t[row]:.6g} s)")
+
+    @property
+    def interval(self) -> float:
+        """Median sampling interval (s)."""
+        return float(np.median(np.diff(self.t)))
+
+
+def write_recording(recording: Recording, path: str | os.PathLike[str]) -> None:
+    """Write `recording` to Parquet (columns of `shared` format: t, gyro_*, accel_*, temperature)."""
+    columns = {"t": recording.t}
+    columns |= {name: recording.gyro[:, i] for i, name in enumerate(GYRO)}
+    columns |= {name: recording.accel[:, i] for i, name in enumerate(ACCEL)}
+    if recording.temperature is not None:
+        columns["temperature"] = recording.temperature
+    write_table(path, columns, UNITS, recording.meta)
+
+
+def read_recording(path: str | os.PathLike[str]) -> Recording:
+    """Read a recording from Parquet or CSV.
+
+    Raises
+    ------
+    InputError
+        Missing columns, NaN, or stamps that do not increase.
+    """
+    columns, meta = read_table(path)
+    require_columns(str(path), columns, ("t", *GYRO, *ACCEL))
+    temperature = columns.get("temperature")
+    try:
+        return Recording(
+            t=np.asarray(columns["t"], dtype=float),
+            gyro=np.column_stack([columns[name] for name in GYRO]).astype(float),
+            accel=np.column_stack([columns[name] for name in ACCEL]).astype(float),
+            temperature=None if temperature is None else np.asarray(temperature, dtype=float),
+            meta=meta,
+        )
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None

@@ -1,0 +1,111 @@
+"""Columns in Parquet or CSV, with units and provenance in the file's metadata.
+
+Every file is written under a temporary name and renamed, so that a reader never meets half of one.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv as pa_csv
+import pyarrow.parquet as pq
+
+from footfall.errors import InputError
+
+UNITS_KEY = b"footfall_units"
+META_KEY = b"footfall_meta"
+
+Columns = Mapping[str, np.ndarray]
+
+
+@contextmanager
+def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Yield a temporary path beside `path`; rename it to `path` when the block ends well.
+
+    Raises
+    ------
+    InputError
+        The folder does not exist or cannot be written.
+    """
+    target = Path(path)
+    try:
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".tmp")
+    except OSError as error:
+        raise InputError(f"{target}: cannot write there ({error.strerror})") from None
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        # mkstemp makes a private file; a result is as readable as any other new file.
+        umask = os.umask(0)
+        os.umask(umask)
+        temporary.chmod(0o666 & ~umask)
+        temporary.replace(target)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_table(
+    path: str | os.PathLike[str], columns: Columns, units: Mapping[str, str], meta: Mapping[str, Any]
+) -> None:
+    """Write equally long one-dimensional columns to Parquet.
+
+    Parameters
+    ----------
+    columns : name -> (n,) array
+    units : name -> unit ("" for none), stored in the schema
+    meta : JSON-serialisable provenance (versions, seed, scenario)
+    """
+    schema_meta = {UNITS_KEY: json.dumps(dict(units)), META_KEY: json.dumps(dict(meta))}
+    table = pa.table({name: pa.array(np.ascontiguousarray(values)) for name, values in columns.items()})
+    with replacing(path) as temporary:
+        pq.write_table(table.replace_schema_metadata(schema_meta), temporary, compression="zstd")
+
+
+def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """Read a Parquet or (by its ending) CSV file.
+
+    Returns
+    -------
+    columns : name -> (n,) float or bool array
+    meta : provenance; empty for a file that Footfall did not write
+
+    Raises
+    ------
+    InputError
+        The file is absent, unreadable, or a column is not numeric.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise InputError(f"{source}: no such file")
+    read: Callable[..., pa.Table] = pa_csv.read_csv if source.suffix.lower() == ".csv" else pq.read_table
+    try:
+        table = read(source)
+    except (pa.ArrowException, OSError) as error:
+        raise InputError(f"{source}: not a readable Parquet or CSV file ({str(error).splitlines()[0]})") from None
+    columns = {}
+    for name, column in zip(table.column_names, table.columns, strict=True):
+        kind = column.type
+        if not (pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)):
+            raise InputError(f"{source}: column {name!r} holds {kind}, expected numbers")
+        values = column.to_numpy(zero_copy_only=False)
+        if column.null_count:
+            values = np.asarray(values, dtype=float)  # nulls become NaN, which each reader judges
+        columns[name] = values
+    stored = (table.schema.metadata or {}).get(META_KEY)
+    return columns, json.loads(stored) if stored else {}
+
+
+def require_columns(source: str, columns: Columns, names: tuple[str, ...]) -> None:
+    """Raise InputError when any of `names` is missing."""
+    missing = [name for name in names if name not in columns]
+    if missing:
+        raise InputError(f"{source}: column {missing[0]!r} is missing (expected {', '.join(names)})")

@@ -1,0 +1,34 @@
+"""What dead reckoning hands to a heading method: one row a footfall."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Footfalls:
+    """Stances of the instrumented foot, two steps apart.
+
+    Row 0 is where the walk starts: its interval, distance and rate are 0. The strides are the rows after it.
+
+    Attributes
+    ----------
+    t : (n,) s, the instant of each footfall
+    interval : (n,) s, T_i of HDR Eq. 3
+    distance : (n,) m, horizontal D_i of HDR Eq. 12
+    rate : (n,) rad/s, raw_i of HDR Eq. 2: heading increment from stance to stance over T_i
+    position : (n, 3) m, dead-reckoned
+    heading : (n,) rad, unwrapped, of the IMU's x axis
+    """
+
+    t: np.ndarray
+    interval: np.ndarray
+    distance: np.ndarray
+    rate: np.ndarray
+    position: np.ndarray
+    heading: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.t)

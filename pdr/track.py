@@ -1,0 +1,74 @@
+"""Estimated positions and headings, one row a footfall, with a method's own evidence beside them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from footfall.errors import InputError
+from footfall.tables import read_table, require_columns, write_table
+
+UNITS = {"t": "s", "x": "m", "y": "m", "z": "m", "heading": "rad"}
+
+
+@dataclass(frozen=True)
+class Track:
+    """Where a method says that the foot was.
+
+    Attributes
+    ----------
+    t : (n,) s
+    position : (n, 3) m, world
+    heading : (n,) rad, unwrapped, of the IMU's x axis
+    evidence : name -> (n,) the method's own columns (HDR: raw and filtered rate, A, I)
+    units : name -> unit of each evidence column
+    meta : provenance (method, parameters, versions)
+    """
+
+    t: np.ndarray
+    position: np.ndarray
+    heading: np.ndarray
+    evidence: Mapping[str, np.ndarray] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+    meta: Mapping[str, Any] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+
+def write_track(track: Track, path: str | os.PathLike[str]) -> None:
+    """Write `track` to Parquet: t, x, y, z, heading and the evidence."""
+    columns = {"t": track.t} | {axis: track.position[:, i] for i, axis in enumerate("xyz")}
+    columns |= {"heading": track.heading, **track.evidence}
+    write_table(path, columns, UNITS | dict(track.units), track.meta)
+
+
+def read_track(path: str | os.PathLike[str]) -> Track:
+    """Read a track from Parquet or CSV, anyone's: only t, x, y, z and heading are required.
+
+    Raises
+    ------
+    InputError
+        Missing columns, no rows, NaN, or stamps that do not increase.
+    """
+    columns, meta = read_table(path)
+    require_columns(str(path), columns, tuple(UNITS))
+    for name in UNITS:
+        if not np.isfinite(columns[name]).all():
+            row = int(np.argmin(np.isfinite(columns[name])))
+            raise InputError(f"{path}: {name} is not finite at row {row}")
+    t = np.asarray(columns["t"], dtype=float)
+    if len(t) < 2 or (np.diff(t) <= 0).any():
+        raise InputError(f"{path}: a track needs at least two rows with increasing t")
+    evidence = {name: values for name, values in columns.items() if name not in UNITS}
+    return Track(
+        t=t,
+        position=np.column_stack([columns[axis] for axis in "xyz"]).astype(float),
+        heading=np.asarray(columns["heading"], dtype=float),
+        evidence=evidence,
+        meta=meta,
+    )

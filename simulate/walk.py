@@ -1,0 +1,143 @@
+"""The truth of one walk: the IMU's pose, what a perfect IMU says, and the true footfalls."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from footfall.errors import InputError
+from footfall.tables import read_table, require_columns, write_table
+
+POSE = ("px", "py", "pz", "qw", "qx", "qy", "qz", "vx", "vy", "vz")
+GYRO = ("gyro_x", "gyro_y", "gyro_z")
+ACCEL = ("accel_x", "accel_y", "accel_z")
+UNITS = {
+    "t": "s",
+    **dict.fromkeys(("px", "py", "pz"), "m"),
+    **dict.fromkeys(("qw", "qx", "qy", "qz"), ""),
+    **dict.fromkeys(("vx", "vy", "vz"), "m/s"),
+    **dict.fromkeys(GYRO, "rad/s"),
+    **dict.fromkeys(ACCEL, "m/s2"),
+    "contact": "body weight",
+    "stance": "",
+}
+FOOTFALL_UNITS = {"t": "s", "x": "m", "y": "m", "z": "m", "heading": "rad"}
+
+
+@dataclass(frozen=True)
+class TrueFootfalls:
+    """The middle of each stance of the instrumented foot.
+
+    Attributes
+    ----------
+    t : (m,) s
+    position : (m, 3) m, of the IMU site in the world
+    heading : (m,) rad, unwrapped, of the IMU's x axis
+    """
+
+    t: np.ndarray
+    position: np.ndarray
+    heading: np.ndarray
+
+
+@dataclass(frozen=True)
+class Walk:
+    """The truth of one simulated walk at the IMU site. Row 0 is the start pose.
+
+    The first `meta["calibration_s"]` seconds are motionless in the pose of the first stance
+    (row 0 of the footfalls): the recording of the same unit from which the static bias is taken.
+
+    Attributes
+    ----------
+    t : (n,) s, evenly spaced, ends of the sampling intervals
+    position : (n, 3) m; quaternion : (n, 4) body to world, scalar first; velocity : (n, 3) m/s
+    gyro : (n, 3) rad/s and accel : (n, 3) m/s2: what a perfect IMU says over the interval that ends at t
+    contact : (n,) share of the body weight on the instrumented foot
+    stance : (n,) bool, the foot is on the ground at rest
+    footfalls : the true footfalls
+    meta : provenance (scenario, subject, seeds, rate, mount, versions)
+    """
+
+    t: np.ndarray
+    position: np.ndarray
+    quaternion: np.ndarray
+    velocity: np.ndarray
+    gyro: np.ndarray
+    accel: np.ndarray
+    contact: np.ndarray
+    stance: np.ndarray
+    footfalls: TrueFootfalls
+    meta: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def interval(self) -> float:
+        """Sampling interval (s)."""
+        return float(self.t[-1] - self.t[0]) / (len(self.t) - 1)
+
+    @property
+    def calibration_s(self) -> float:
+        """Length of the motionless start (s)."""
+        return float(self.meta.get("calibration_s", 0.0))
+
+
+def footfalls_path(path: str | os.PathLike[str]) -> Path:
+    """The file beside a walk that holds its footfalls: walk.parquet -> walk.footfalls.parquet."""
+    source = Path(path)
+    return source.with_name(f"{source.stem}.footfalls{source.suffix}")
+
+
+def write_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
+    """Write the walk and, beside it, its footfalls."""
+    f = walk.footfalls
+    columns = {"t": f.t, "x": f.position[:, 0], "y": f.position[:, 1], "z": f.position[:, 2], "heading": f.heading}
+    # The footfalls first: whoever finds the walk finds them too.
+    write_table(footfalls_path(path), columns, FOOTFALL_UNITS, walk.meta)
+    pose = np.column_stack([walk.position, walk.quaternion, walk.velocity])
+    columns = {"t": walk.t} | dict(zip(POSE, pose.T, strict=True))
+    columns |= dict(zip(GYRO, walk.gyro.T, strict=True)) | dict(zip(ACCEL, walk.accel.T, strict=True))
+    columns |= {"contact": walk.contact, "stance": walk.stance}
+    write_table(path, columns, UNITS, walk.meta)
+
+
+def read_walk(path: str | os.PathLike[str]) -> Walk:
+    """Read a walk that `write_walk` wrote.
+
+    Raises
+    ------
+    InputError
+        Missing file, columns or footfalls; values that are not finite.
+    """
+    columns, meta = read_table(path)
+    require_columns(str(path), columns, tuple(UNITS))
+    footfalls, _ = read_table(footfalls_path(path))
+    require_columns(str(footfalls_path(path)), footfalls, tuple(FOOTFALL_UNITS))
+
+    def stack(names: tuple[str, ...]) -> np.ndarray:
+        values = np.column_stack([columns[name] for name in names]).astype(float)
+        if not np.isfinite(values).all():
+            row, column = np.argwhere(~np.isfinite(values))[0]
+            raise InputError(f"{path}: {names[column]} is not finite at row {row}")
+        return values
+
+    pose = stack(POSE)
+    return Walk(
+        t=stack(("t",))[:, 0],
+        position=pose[:, :3],
+        quaternion=pose[:, 3:7],
+        velocity=pose[:, 7:],
+        gyro=stack(GYRO),
+        accel=stack(ACCEL),
+        contact=stack(("contact",))[:, 0],
+        stance=columns["stance"].astype(bool),
+        footfalls=TrueFootfalls(
+            t=footfalls["t"],
+            position=np.column_stack([footfalls[axis] for axis in "xyz"]),
+            heading=footfalls["heading"],
+        ),
+        meta=meta,
+    )
