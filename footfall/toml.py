@@ -1,0 +1,53 @@
+"""TOML from outside, checked by a pydantic model at the edge."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from pathlib import Path
+from typing import TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from footfall.errors import InputError
+
+
+class Strict(BaseModel):
+    """Base of every model of a file: refuses unknown keys, wrong types and numbers that are not finite."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def read_toml(path: str | os.PathLike[str], model: type[Model]) -> Model:
+    """Read `path` as a `model`.
+
+    Raises
+    ------
+    InputError
+        No such file, not TOML, or the first key that the model refuses, with its value and the reason.
+    """
+    source = Path(path)
+    try:
+        content = tomllib.loads(source.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"{source}: cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"{source}: not UTF-8 text ({error.reason})") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{source}: not valid TOML ({error})") from None
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        if first["type"] == "extra_forbidden":
+            raise InputError(f"{source}: unknown key {key!r} = {first['input']!r}") from None
+        if first["type"] == "missing":
+            raise InputError(f"{source}: key {key!r} is missing") from None
+        # A whole table is no help; the message of a model's own check says what is wrong with it.
+        value = "" if isinstance(first["input"], dict | list) else f" = {first['input']!r}"
+        reason = first["msg"].removeprefix("Value error, ")
+        raise InputError(f"{source}: {key}{value}: {reason}" if key else f"{source}: {reason}") from None
