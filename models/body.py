@@ -1,0 +1,352 @@
+"""The walker's body, built with MjSpec: 23 degrees of freedom, 15 torque-limited joint servos.
+
+Segment lengths and masses follow Winter, Biomechanics and Motor Control of Human Movement, table 4.1
+(thigh 0.245 H, shank 0.246 H; thigh 0.100 M, shank 0.0465 M, foot with shoe 0.017 M). The pelvis carries
+0.142 M and the rigid head-arms-trunk the rest. Nothing but joint torques, gravity and ground contact acts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import mujoco
+import numpy as np
+
+from footfall.errors import InputError
+from footfall.models.subject import Subject
+
+# Joint names, in the order of qpos after the free joint. Right leg first: it carries the IMU by default.
+LEG_JOINTS = ("hip_flexion", "hip_adduction", "hip_rotation", "knee", "ankle", "subtalar", "toe")
+LUMBAR_JOINTS = ("lumbar_roll", "lumbar_pitch", "lumbar_yaw")
+JOINTS = (
+    *(f"{joint}_r" for joint in LEG_JOINTS),
+    *(f"{joint}_l" for joint in LEG_JOINTS),
+    *LUMBAR_JOINTS,
+)
+
+
+@dataclass(frozen=True)
+class Servo:
+    """A position servo: stiffness (Nm/rad), damping (Nms/rad) and torque limits (Nm)."""
+
+    kp: float
+    kv: float
+    low: float
+    high: float
+
+
+_LEG_SERVOS = {
+    "hip_flexion": Servo(500, 40, -200, 200),
+    "hip_adduction": Servo(500, 40, -150, 150),
+    "hip_rotation": Servo(250, 18, -80, 80),
+    "knee": Servo(400, 25, -180, 200),
+    "ankle": Servo(300, 12, -160, 60),
+    "subtalar": Servo(150, 6, -50, 50),
+}
+# The actuators, in control order: lumbar, right leg, left leg. The toes are passive.
+SERVOS = {
+    "lumbar_roll": Servo(600, 50, -150, 150),
+    "lumbar_pitch": Servo(600, 50, -150, 150),
+    "lumbar_yaw": Servo(300, 25, -80, 80),
+    **{f"{joint}_{side}": servo for side in "rl" for joint, servo in _LEG_SERVOS.items()},
+}
+N_JOINTS, N_SERVOS = len(JOINTS), len(SERVOS)
+SERVO_JOINT = np.array([JOINTS.index(name) for name in SERVOS])  # control index -> joint index
+
+# name -> (axis on the right side, range in degrees, damping, armature, stiffness). A left joint mirrors the
+# axes along x and z, so that equal angles are mirror images.
+_LEG_AXES = {
+    "hip_flexion": ((0, -1, 0), (-40, 110), 2.0, 0.01, 0.0),
+    "hip_adduction": ((1, 0, 0), (-35, 25), 2.0, 0.01, 0.0),
+    "hip_rotation": ((0, 0, 1), (-40, 40), 1.0, 0.01, 0.0),
+    "knee": ((0, 1, 0), (0, 140), 1.0, 0.01, 0.0),
+    "ankle": ((0, -1, 0), (-50, 30), 1.0, 0.008, 0.0),
+    "subtalar": ((1, 0, 0), (-25, 25), 1.0, 0.008, 0.0),
+    "toe": ((0, -1, 0), (-10, 60), 0.6, 0.002, 25.0),
+}
+_LUMBAR_AXES = {
+    "lumbar_roll": ((1, 0, 0), (-25, 25), 2.0, 0.01, 0.0),
+    "lumbar_pitch": ((0, 1, 0), (-30, 45), 2.0, 0.01, 0.0),
+    "lumbar_yaw": ((0, 0, 1), (-35, 35), 2.0, 0.01, 0.0),
+}
+
+ANKLE_HEIGHT = 0.075  # m above the ground, sole included, reference body
+HIP_HALF_WIDTH = 0.088
+
+
+@dataclass(frozen=True)
+class Mount:
+    """Where the IMU sits on a foot.
+
+    Attributes
+    ----------
+    foot : "right" or "left"
+    position : (3,) m from the ankle, x forward, y left, z up, reference body (scaled with stature)
+    euler_deg : (3,) roll, pitch, yaw of the IMU in the foot (z-y-x); positive pitch is nose down
+    """
+
+    foot: str = "right"
+    position: tuple[float, float, float] = (0.075, 0.0, -0.01)
+    euler_deg: tuple[float, float, float] = (0.0, 20.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if self.foot not in ("right", "left"):
+            raise InputError(f"mount: foot = {self.foot!r}, expected 'right' or 'left'")
+        if not np.isfinite([*self.position, *self.euler_deg]).all():
+            raise InputError("mount: position and euler_deg must be finite")
+
+
+MOUNTS = {
+    "instep": Mount(),
+    # HDR paper, Figure 6: rigidly attached to the medial side of the right shoe.
+    "medial": Mount(position=(0.02, 0.045, -0.04), euler_deg=(0.0, 0.0, 0.0)),
+    "heel": Mount(position=(-0.06, 0.0, -0.03), euler_deg=(0.0, -10.0, 0.0)),
+    "instep-left": Mount(foot="left"),
+}
+
+
+@dataclass(frozen=True)
+class Ground:
+    """A heightfield: `heights[j, i]` (m) at x = x0 + i cell, y = y0 + j cell."""
+
+    x0: float
+    y0: float
+    cell: float
+    heights: np.ndarray = field(repr=False)
+
+
+def build_body(
+    subject: Subject,
+    *,
+    timestep: float,
+    mount: Mount | None = None,
+    ground: Ground | None = None,
+) -> mujoco.MjModel:
+    """Compile the walker on level ground or on a heightfield.
+
+    Parameters
+    ----------
+    timestep : s
+    mount : adds sensors `imu_pos`, `imu_quat` (of the IMU site) after the control sensors
+    ground : level when None
+    """
+    spec = mujoco.MjSpec()
+    spec.modelname = "footfall walker"
+    spec.compiler.degree = False
+    option = spec.option
+    option.timestep = timestep
+    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.solver = mujoco.mjtSolver.mjSOL_NEWTON
+    option.cone = mujoco.mjtCone.mjCONE_PYRAMIDAL
+    # MuJoCo 4.0.0's sparse Cholesky gives Newton a wrong Hessian.
+    option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    # Measured to be enough for this body; more iterations change nothing that shows.
+    option.iterations, option.ls_iterations = 4, 6
+    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_EULERDAMP | mujoco.mjtDisableBit.mjDSBL_ISLAND)
+    spec.visual.headlight.ambient = [0.35, 0.35, 0.35]
+
+    _add_ground(spec, subject, ground)
+    s, m = subject.scale, subject.mass_ratio
+    pelvis = spec.worldbody.add_body(name="pelvis", pos=[0, 0, s])
+    pelvis.add_freejoint(name="root")
+    _inertial(pelvis, [0, 0, 0.02 * s], 10.65 * m, np.array([0.08, 0.07, 0.09]) * m * s**2)
+    _look(pelvis, [0, -0.08 * s, 0], [0, 0.08 * s, 0], 0.09 * s, _TROUSERS)
+    for side in "rl":
+        _add_leg(pelvis, side, subject)
+    torso = pelvis.add_body(name="torso", pos=[0, 0, 0.10 * s])
+    _inertial(torso, [0, 0, 0.24 * s], 40.2 * m, np.array([2.2, 2.0, 1.0]) * m * s**2)
+    for name, (axis, limits, damping, armature, stiffness) in _LUMBAR_AXES.items():
+        _joint(torso, name, axis, limits, damping * m, armature * m, stiffness)
+    _add_torso_looks(torso, s)
+
+    for name, servo in SERVOS.items():
+        actuator = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+        # Strength in proportion to weight times length: a heavier person is as able as a lighter one.
+        strength = m * s
+        actuator.set_to_position(kp=servo.kp * strength, kv=servo.kv * strength)
+        actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
+        actuator.forcerange = [servo.low * strength, servo.high * strength]
+    _add_sensors(spec, subject, mount)
+    return spec.compile()
+
+
+_TROUSERS = (0.20, 0.24, 0.34, 1.0)
+_SHIRT = (0.75, 0.35, 0.25, 1.0)
+_SKIN = (0.85, 0.68, 0.56, 1.0)
+_SHOE = (0.92, 0.92, 0.95, 1.0)
+
+
+def _inertial(body: mujoco.MjsBody, position: list[float], mass: float, inertia: np.ndarray) -> None:
+    body.explicitinertial = True
+    body.ipos, body.mass, body.inertia = position, mass, list(inertia)
+
+
+def _joint(
+    body: mujoco.MjsBody,
+    name: str,
+    axis: tuple[int, int, int],
+    limits_deg: tuple[float, float],
+    damping: float,
+    armature: float,
+    stiffness: float,
+) -> None:
+    joint = body.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_HINGE, axis=axis, armature=armature)
+    joint.range = np.radians(limits_deg)
+    joint.limited = mujoco.mjtLimited.mjLIMITED_TRUE
+    joint.damping = [damping, 0, 0]
+    joint.stiffness = [stiffness, 0, 0]
+
+
+def _look(body: mujoco.MjsBody, start: list[float], end: list[float], radius: float, rgba: tuple) -> None:
+    """A capsule that is only seen."""
+    body.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_CAPSULE,
+        fromto=[*start, *end],
+        size=[radius, 0, 0],
+        rgba=rgba,
+        contype=0,
+        conaffinity=0,
+        mass=0,
+        group=1,
+    )
+
+
+def _contact(subject: Subject) -> dict:
+    return {
+        "condim": 3,
+        "friction": [subject.friction, 0.005, 0.0001],
+        "solref": [subject.sole_time_s, 1.0],
+        "solimp": [0.85, 0.95, 0.008, 0.5, 2.0],
+    }
+
+
+def _add_ground(spec: mujoco.MjSpec, subject: Subject, ground: Ground | None) -> None:
+    world = spec.worldbody
+    world.add_light(pos=[0, 0, 30], dir=[0.2, 0.3, -1], type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL)
+    common = {"name": "ground", "contype": 1, "conaffinity": 0, "rgba": [0.72, 0.74, 0.72, 1]}
+    common |= _contact(subject)
+    if ground is None:
+        world.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], **common)
+        return
+    rows, columns = ground.heights.shape
+    low, high = float(ground.heights.min()), float(ground.heights.max())
+    span = max(high - low, 1e-3)
+    half_x, half_y = (columns - 1) * ground.cell / 2, (rows - 1) * ground.cell / 2
+    spec.add_hfield(
+        name="ground",
+        nrow=rows,
+        ncol=columns,
+        size=[half_x, half_y, span, 1.0],
+        userdata=((ground.heights - low) / span).astype(float).ravel(),
+    )
+    world.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_HFIELD,
+        hfieldname="ground",
+        pos=[ground.x0 + half_x, ground.y0 + half_y, low],
+        **common,
+    )
+
+
+def _add_leg(pelvis: mujoco.MjsBody, side: str, subject: Subject) -> None:
+    s, m = subject.scale, subject.mass_ratio
+    sign = -1 if side == "r" else 1  # of y
+    thigh_length, shank_length = 0.245 * subject.height_m, 0.246 * subject.height_m
+    inertia_scale = m * s**2
+
+    def joints(body: mujoco.MjsBody, *names: str) -> None:
+        for name in names:
+            axis, limits, damping, armature, stiffness = _LEG_AXES[name]
+            mirrored = axis if side == "r" else (-axis[0], axis[1], -axis[2])
+            _joint(body, f"{name}_{side}", mirrored, limits, damping * m, armature * m, stiffness * m * s)
+
+    thigh = pelvis.add_body(name=f"thigh_{side}", pos=[0, sign * HIP_HALF_WIDTH * s, -0.06 * s])
+    _inertial(thigh, [0, 0, -0.433 * thigh_length], 7.5 * m, np.array([0.144, 0.144, 0.03]) * inertia_scale)
+    joints(thigh, "hip_flexion", "hip_adduction", "hip_rotation")
+    _look(thigh, [0, 0, 0], [0, 0, -thigh_length], 0.065 * s, _TROUSERS)
+
+    shank = thigh.add_body(name=f"shank_{side}", pos=[0, 0, -thigh_length])
+    _inertial(shank, [0, 0, -0.433 * shank_length], 3.49 * m, np.array([0.059, 0.059, 0.006]) * inertia_scale)
+    joints(shank, "knee")
+    _look(shank, [0, 0, 0], [0, 0, -shank_length + 0.03 * s], 0.048 * s, _TROUSERS)
+
+    foot = shank.add_body(name=f"foot_{side}", pos=[0, 0, -shank_length])
+    _inertial(foot, [0.05 * s, 0, -0.04 * s], 1.15 * m, np.array([0.0012, 0.005, 0.005]) * inertia_scale)
+    joints(foot, "ankle", "subtalar")
+    sole = -ANKLE_HEIGHT * s
+    touch = {"contype": 0, "conaffinity": 1, "mass": 0, "rgba": _SHOE, "group": 1} | _contact(subject)
+    sphere, capsule = mujoco.mjtGeom.mjGEOM_SPHERE, mujoco.mjtGeom.mjGEOM_CAPSULE
+    # Capsule ends and spheres share the sole's plane.
+    foot.add_geom(
+        name=f"heel_{side}", type=sphere, pos=[-0.04 * s, 0, sole + 0.03 * s], size=[0.03 * s, 0, 0], **touch
+    )
+    ball_z = sole + 0.018 * s
+    foot.add_geom(
+        name=f"ball_{side}",
+        type=capsule,
+        fromto=[0.125 * s, -0.035 * s, ball_z, 0.125 * s, 0.035 * s, ball_z],
+        size=[0.018 * s, 0, 0],
+        **touch,
+    )
+    _look(foot, [-0.03 * s, 0, -0.04 * s], [0.11 * s, 0, -0.05 * s], 0.034 * s, _SHOE)
+    toe = foot.add_body(name=f"toe_{side}", pos=[0.135 * s, 0, ball_z])
+    _inertial(toe, [0.03 * s, 0, 0], 0.15 * m, np.full(3, 1e-4) * inertia_scale)
+    joints(toe, "toe")
+    toe.add_geom(name=f"toe_{side}", type=sphere, pos=[0.05 * s, 0, 0], size=[0.0178 * s, 0, 0], **touch)
+    _look(toe, [0.0, -0.018 * s, 0.004 * s], [0.045 * s, -0.004 * s, 0.002 * s], 0.02 * s, _SHOE)
+    _look(toe, [0.0, 0.018 * s, 0.004 * s], [0.045 * s, 0.004 * s, 0.002 * s], 0.02 * s, _SHOE)
+
+    # Boxes round each contact, for the touch sensors.
+    box = mujoco.mjtGeom.mjGEOM_BOX
+    foot.add_site(
+        name=f"heel_{side}", type=box, pos=[-0.045 * s, 0, sole + 0.02 * s], size=np.array([0.04, 0.06, 0.04]) * s
+    )
+    foot.add_site(
+        name=f"ball_{side}", type=box, pos=[0.125 * s, 0, sole + 0.02 * s], size=np.array([0.03, 0.07, 0.04]) * s
+    )
+    toe.add_site(name=f"toe_{side}", type=box, pos=[0.055 * s, 0, 0], size=np.array([0.04, 0.06, 0.04]) * s)
+
+
+def _add_torso_looks(torso: mujoco.MjsBody, s: float) -> None:
+    """Trunk, head and hanging arms; their mass is in the torso's inertia."""
+    for y in (-0.07, 0.07):
+        _look(torso, [0, y * s, 0.02 * s], [0, 1.3 * y * s, 0.36 * s], 0.10 * s, _SHIRT)
+    _look(torso, [0, 0, 0.42 * s], [0, 0, 0.5 * s], 0.05 * s, _SKIN)
+    _look(torso, [0.01 * s, 0, 0.585 * s], [0.01 * s, 0, 0.62 * s], 0.095 * s, _SKIN)
+    for y in (-1, 1):
+        shoulder, elbow = [0, 0.21 * y * s, 0.40 * s], [-0.02 * s, 0.25 * y * s, 0.10 * s]
+        hand = [0.06 * s, 0.25 * y * s, -0.14 * s]
+        _look(torso, shoulder, elbow, 0.045 * s, _SHIRT)
+        _look(torso, elbow, hand, 0.036 * s, _SKIN)
+
+
+# Sensor layout: what control and scoring read, in this order.
+SENSOR_FOOT_POSITION = slice(0, 6)  # right, left foot body (m)
+SENSOR_FOOT_VELOCITY = slice(6, 12)
+SENSOR_FOOT_RATE = slice(12, 18)
+SENSOR_TOUCH = slice(18, 24)  # heel, ball, toe: right, left (N)
+SENSOR_IMU_POSITION = slice(24, 27)
+SENSOR_IMU_QUATERNION = slice(27, 31)
+
+
+def _add_sensors(spec: mujoco.MjSpec, subject: Subject, mount: Mount | None) -> None:
+    body, site, kind = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_SITE, mujoco.mjtSensor
+    for quantity in (kind.mjSENS_FRAMEPOS, kind.mjSENS_FRAMELINVEL, kind.mjSENS_FRAMEANGVEL):
+        for side in "rl":
+            spec.add_sensor(type=quantity, objtype=body, objname=f"foot_{side}")
+    for side in "rl":
+        for part in ("heel", "ball", "toe"):
+            spec.add_sensor(type=kind.mjSENS_TOUCH, objtype=site, objname=f"{part}_{side}")
+    if mount is None:
+        return
+    quaternion = np.zeros(4)
+    mujoco.mju_euler2Quat(quaternion, np.radians(mount.euler_deg[::-1]), "zyx")
+    spec.body(f"foot_{mount.foot[0]}").add_site(
+        name="imu",
+        pos=np.array(mount.position) * subject.scale,
+        quat=quaternion,
+        type=mujoco.mjtGeom.mjGEOM_BOX,
+        size=[0.022, 0.012, 0.007],  # the nIMU's 45 x 23 x 13 mm
+        rgba=[0.1, 0.5, 0.9, 1],
+    )
+    spec.add_sensor(name="imu_pos", type=kind.mjSENS_FRAMEPOS, objtype=site, objname="imu")
+    spec.add_sensor(name="imu_quat", type=kind.mjSENS_FRAMEQUAT, objtype=site, objname="imu")

@@ -1,0 +1,101 @@
+"""The reference gait: normative joint curves of level walking, scaled with speed.
+
+Curves of hip flexion, knee, ankle and hip adduction over one stride (0 = heel strike of that leg), rounded from
+normative data (Winter; Perry & Burnfield). The hip is shifted by the pelvic tilt and the ankle was adjusted so
+that forward kinematics put the foot flat from 10 to 40 % of the stride.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from footfall.models.body import N_SERVOS, SERVOS
+
+N_PHASE = 1000
+_HARMONICS = 7
+_PELVIC_TILT_DEG = 6.5
+_TRUNK_COUNTER_ROTATION = 0.2  # rad, in place of arm swing: without it the body spins
+
+# percent of the stride -> degrees
+_HIP = {
+    0: 28, 5: 27.5, 10: 25, 20: 15, 30: 4.5, 40: -5.5, 50: -11.5, 55: -10.5, 60: -4, 65: 4.5, 70: 13.5,
+    75: 20.5, 80: 26, 85: 29.5, 90: 30.5, 95: 29.5,
+}  # fmt: skip
+_KNEE = {
+    0: 4, 5: 9, 10: 15, 15: 18, 20: 17, 25: 13.5, 30: 9.5, 35: 6.5, 40: 5.5, 45: 7, 50: 13, 55: 23, 60: 37,
+    65: 52, 70: 61, 73: 63, 77: 60, 80: 54, 85: 38, 90: 20, 95: 7,
+}  # fmt: skip
+_ANKLE = {
+    0: 1, 3: -3, 7: -4, 10: -0.5, 15: 4.5, 20: 8, 30: 11, 40: 12.5, 45: 12, 50: 7, 55: -3, 60: -14, 63: -17,
+    66: -15, 70: -9, 75: -1, 80: 4, 85: 5, 90: 4, 95: 2,
+}  # fmt: skip
+_ADDUCTION = {0: -1, 10: 3, 20: 5, 30: 4.5, 40: 3.5, 50: 1, 55: -2, 62: -5, 70: -4, 80: -3, 90: -2}
+
+INDEX = {name: i for i, name in enumerate(SERVOS)}
+
+
+def mask(*joints: str) -> np.ndarray:
+    """1 at these servos (named without side: both sides), else 0."""
+    out = np.zeros(N_SERVOS)
+    for joint in joints:
+        for name, i in INDEX.items():
+            if name == joint or name[:-2] == joint:
+                out[i] = 1.0
+    return out
+
+
+def _curve(anchors: dict[int, float]) -> np.ndarray:
+    """Periodic spline through the anchors, cut to its first harmonics (rad)."""
+    percent = np.array([*anchors, 100]) / 100
+    degrees = np.array([*anchors.values(), anchors[0]], dtype=float)
+    samples = CubicSpline(percent, np.radians(degrees), bc_type="periodic")(np.arange(N_PHASE) / N_PHASE)
+    spectrum = np.fft.rfft(samples)
+    spectrum[_HARMONICS + 1 :] = 0
+    return np.fft.irfft(spectrum, N_PHASE)
+
+
+def _table() -> np.ndarray:
+    phase = np.arange(N_PHASE)
+    curves = {
+        "hip_flexion": _curve(_HIP) - np.radians(_PELVIC_TILT_DEG),
+        "hip_adduction": _curve(_ADDUCTION),
+        "knee": _curve(_KNEE),
+        "ankle": _curve(_ANKLE),
+    }
+    table = np.zeros((N_PHASE, N_SERVOS))
+    for side, offset in (("r", 0), ("l", N_PHASE // 2)):
+        for joint, curve in curves.items():
+            table[:, INDEX[f"{joint}_{side}"]] = np.roll(curve, -offset)
+    table[:, INDEX["lumbar_yaw"]] = -_TRUNK_COUNTER_ROTATION * np.cos(2 * np.pi * phase / N_PHASE)
+    return table
+
+
+TABLE = _table()  # (N_PHASE, N_SERVOS) rad, at 1.25 m/s
+_HIP_MASK = mask("hip_flexion")
+
+
+def stride_frequency(speed: np.ndarray) -> np.ndarray:
+    """Strides a second at `speed` (m/s) of the reference body."""
+    return 0.92 * (np.maximum(speed, 0.5) / 1.25) ** 0.45
+
+
+def hip_amplitude(speed: np.ndarray) -> np.ndarray:
+    """Hip excursion relative to that at 1.25 m/s."""
+    return (np.maximum(speed, 0.5) / 1.25) ** 0.55
+
+
+def reference_angles(phase: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+    """Servo angles of the reference gait.
+
+    Parameters
+    ----------
+    phase : (...) stride phase in [0, 1), 0 at the right heel strike
+    amplitude : (...) hip excursion relative to 1.25 m/s
+
+    Returns
+    -------
+    (..., 15) rad
+    """
+    angles = TABLE[(phase * N_PHASE).astype(np.intp) % N_PHASE]
+    return angles * (1 + _HIP_MASK * (amplitude[..., None] - 1))

@@ -1,0 +1,96 @@
+"""What the walker is trained for: follow the command upright, like the reference, with quiet stance feet."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from footfall.models import body, gait
+from footfall.simulate.walkers import CONTROL_INTERVAL, Trace, Walkers
+
+_KP = np.array([servo.kp for servo in body.SERVOS.values()])
+_KV = np.array([servo.kv for servo in body.SERVOS.values()])
+_LOW = np.array([servo.low for servo in body.SERVOS.values()])
+_HIGH = np.array([servo.high for servo in body.SERVOS.values()])
+_STRENGTH = np.maximum(-_LOW, _HIGH)
+_POSE_WEIGHT = 1 - 0.5 * gait.mask("lumbar_yaw", "hip_rotation", "subtalar")
+WEIGHTS = {
+    "pose": 0.30,
+    "mean_speed": 0.20,
+    "speed": 0.08,
+    "heading": 0.14,
+    "upright": 0.08,
+    "still_foot": 0.28,
+    "contact": 0.12,
+    "heel": 0.08,
+    "torque": -0.25,
+    "power": -0.03,
+    "jerk": -0.036,
+    "action": -0.0135,
+    "impact": -0.06,
+    "foot_jolt": -0.12,
+    "wide": -0.06,
+}
+_BODY_WEIGHT = 740.0  # N, reference body
+
+
+def window(phase: np.ndarray, start: float, end: float, ramp: float = 0.03) -> np.ndarray:
+    """1 inside (start, end) of the stride, 0 outside, with linear ramps."""
+    return np.clip(np.minimum((phase - start) / ramp, (end - phase) / ramp) + 0.5, 0, 1)
+
+
+def reward_terms(
+    walkers: Walkers, trace: Trace, action: np.ndarray, residual_change: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Unweighted terms, (n,) each, of the control step that `trace` records."""
+    n, k = walkers.n, walkers.substeps
+    qpos, qvel = walkers.qpos, walkers.qvel
+    reference = walkers.reference_now()
+    deviation = ((qpos[:, 7 + body.SERVO_JOINT] - reference) ** 2 * _POSE_WEIGHT).sum(1)
+    along, _ = walkers.velocity()
+    lag, aside = walkers.mean_velocity[:, 0] - walkers.speed, walkers.mean_velocity[:, 1]
+    upright = np.einsum("ni,ni->n", walkers.rotation[:, :, 2], walkers.up)
+
+    velocity = trace.sensor[:, :, body.SENSOR_FOOT_VELOCITY].reshape(n, k, 2, 3)
+    rate = trace.sensor[:, :, body.SENSOR_FOOT_RATE].reshape(n, k, 2, 3)
+    touch = trace.sensor[:, :, body.SENSOR_TOUCH].reshape(n, k, 2, 3)
+    force = touch.mean(1).sum(-1)  # (n, 2)
+    heel = touch.mean(1)[:, :, 0]
+    speed2, rate2 = (velocity**2).sum(-1).mean(1), (rate**2).sum(-1).mean(1)
+    phase = np.stack([walkers.phase, (walkers.phase + 0.5) % 1], 1)
+    flat, loaded_heel = window(phase, 0.11, 0.42), window(phase, 0.05, 0.38)
+    swing, stand = window(phase, 0.63, 0.97), window(phase, 0.04, 0.55)
+    still = 1 / (1 + speed2 / 0.12**2 + rate2 / 0.6**2)
+    wrong_contact = swing * np.minimum(force / 200, 1) + stand * (1 - np.minimum(force / 150, 1))
+
+    strength = (walkers.strength * np.ones(n))[:, None, None]
+    angle = trace.qpos[:, :, 7 + body.SERVO_JOINT]
+    angle_rate = trace.qvel[:, :, 6 + body.SERVO_JOINT]
+    torque = np.clip(_KP * (trace.target - angle) - _KV * angle_rate, _LOW, _HIGH)
+    jolt = np.linalg.norm(np.diff(velocity, axis=1), axis=-1).max((1, 2)) / (CONTROL_INTERVAL / k)
+    feet = walkers.sensor[:, body.SENSOR_FOOT_POSITION]
+    dx, dy = feet[:, 3] - feet[:, 0], feet[:, 4] - feet[:, 1]
+    separation = -walkers.sin * dx + walkers.cos * dy
+    return {
+        "pose": np.exp(-3 * deviation),
+        "mean_speed": 0.6 * np.exp(-20 * lag**2 - 8 * aside**2) + 0.4 * np.exp(-2 * lag**2 - 2 * aside**2),
+        "speed": np.exp(-3 * (along - walkers.speed) ** 2),
+        "heading": np.exp(-12 * walkers.yaw_error**2),
+        "upright": np.exp(-12 * (1 - upright) - 0.2 * (qvel[:, 3:6] ** 2).sum(1)),
+        "still_foot": (flat * still).sum(1) / np.maximum(flat.sum(1), 0.2),
+        "contact": 1 - np.clip(wrong_contact.sum(1), 0, 1),
+        "heel": (loaded_heel * np.minimum(heel / 120, 1)).sum(1) / np.maximum(loaded_heel.sum(1), 0.2),
+        "torque": ((torque / _STRENGTH) ** 2).mean((1, 2)),
+        "power": np.abs(torque * strength * angle_rate).sum(2).mean(1) / 1000,
+        "jerk": (residual_change**2).sum(1),
+        "action": (action**2).sum(1),
+        "impact": np.clip(touch.sum(-1).max((1, 2)) / _BODY_WEIGHT - 1.6, 0, 2.5),
+        "foot_jolt": np.clip(jolt / 60 - 1, 0, 2.5),
+        # Step width beyond 15 cm, or feet that nearly cross.
+        "wide": np.clip((separation - 0.13) / 0.05, 0, 2) + np.clip((0.06 - separation) / 0.05, 0, 2),
+    }
+
+
+def total(terms: dict[str, np.ndarray]) -> np.ndarray:
+    """Weighted sum (n,); 0 where a walker's state is not finite."""
+    value = sum(weight * terms[name] for name, weight in WEIGHTS.items())
+    return np.where(np.isfinite(value), value, 0.0)
