@@ -1,0 +1,119 @@
+"""From the truth of a walk to what one IMU unit would have recorded."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Collection
+from dataclasses import asdict
+
+import numpy as np
+
+from footfall.models.imu import ROOM, Channel, ImuUnit, TemperatureProfile, TriadUnit, stages
+from footfall.recording import Recording
+from footfall.simulate.budget import DriftBudget, drift_budget
+from footfall.simulate.walk import Walk
+from footfall.streams import stream
+
+BIAS_TIME = 25.0  # s, T_bias of the HDR paper, section 2
+
+
+def record(
+    walk: Walk,
+    unit: ImuUnit,
+    *,
+    seed: int,
+    temperature: TemperatureProfile = ROOM,
+    without: Collection[str] = (),
+) -> Recording:
+    """What `unit` says of `walk`, sample for sample at the walk's rate.
+
+    Parameters
+    ----------
+    seed : of the noises of this recording (turn-on bias, flicker, random walk, white noise)
+    temperature : of the air; the unit is as warm as `temperature.start` at the walk's first sample
+    without : names of effects to switch off (`footfall.models.imu.EFFECTS`), in gyros and accelerometers;
+        the random draws of the others stay as they are
+
+    Raises
+    ------
+    InputError
+        An effect that does not exist, or a seed that is no integer of 0 or more.
+    """
+    die = temperature.die(walk.t, unit.spec.thermal.time_constant)
+    gyro = _channel(walk, unit, "gyro", die, seed)
+    return _recording(walk, unit, _last(gyro, without), die, seed, temperature, without)
+
+
+def record_with_budget(
+    walk: Walk,
+    unit: ImuUnit,
+    *,
+    seed: int,
+    temperature: TemperatureProfile = ROOM,
+    without: Collection[str] = (),
+    bias_time: float = BIAS_TIME,
+) -> tuple[Recording, DriftBudget]:
+    """`record`, and which cause turned the heading by how much in each stride.
+
+    Parameters
+    ----------
+    bias_time : s of motionless start over which the static bias is averaged
+
+    Raises
+    ------
+    InputError
+        As `record`; or the walk's motionless start is shorter than `bias_time`.
+    """
+    die = temperature.die(walk.t, unit.spec.thermal.time_constant)
+    signals = dict(stages(_channel(walk, unit, "gyro", die, seed), without))
+    gyro = signals[next(reversed(signals))]
+    recording = _recording(walk, unit, gyro, die, seed, temperature, without)
+    return recording, drift_budget(walk, signals, bias_time)
+
+
+def _channel(walk: Walk, unit: ImuUnit, name: str, die: np.ndarray, seed: int) -> Channel:
+    triad: TriadUnit = getattr(unit, name)
+    return Channel(
+        unit=triad,
+        true=getattr(walk, name),
+        force=walk.accel,
+        warmth=die - unit.spec.thermal.reference,
+        interval=walk.interval,
+        stream=lambda noise: stream(seed, f"noise.{name}.{noise}"),
+    )
+
+
+def _last(channel: Channel, without: Collection[str]) -> np.ndarray:
+    return deque(stages(channel, without), maxlen=1)[0][1]
+
+
+def _recording(
+    walk: Walk,
+    unit: ImuUnit,
+    gyro: np.ndarray,
+    die: np.ndarray,
+    seed: int,
+    temperature: TemperatureProfile,
+    without: Collection[str],
+) -> Recording:
+    return Recording(
+        t=walk.t - walk.t[0],
+        gyro=gyro.copy(),
+        accel=_last(_channel(walk, unit, "accel", die, seed), without).copy(),
+        temperature=_reported(unit, die),
+        meta={
+            **walk.meta,
+            "imu": unit.spec.name,
+            "unit_seed": unit.seed,
+            "noise_seed": seed,
+            "temperature": asdict(temperature),
+            "without": sorted(without),
+        },
+    )
+
+
+def _reported(unit: ImuUnit, die: np.ndarray) -> np.ndarray | None:
+    thermal = unit.spec.thermal
+    if not thermal.reported:
+        return None
+    return np.round(die / thermal.resolution) * thermal.resolution if thermal.resolution else die
