@@ -1,0 +1,236 @@
+"""Pedestrian dead reckoning with a foot-mounted IMU (HDR paper, section 4).
+
+Zero velocity at each footfall corrects the velocity alone, the accelerometers bound the tilt, and heading
+is the gyro's own: nothing here observes it, so nothing may touch it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from footfall.errors import InputError
+from footfall.pdr import _kernels
+from footfall.pdr.footfalls import Footfalls
+from footfall.pdr.stance import Detector, StanceParams, Stances, ThresholdDetector, find_stances
+from footfall.pdr.strapdown import GRAVITY, ORIGIN, heading_of
+from footfall.recording import Recording
+
+REST_BLOCK_S = 0.5
+REST_GYRO = math.radians(2.0)
+REST_ACCEL = 0.4
+REST_GRAVITY = 1.0
+MIN_LEVEL = math.sin(math.radians(10.0))
+
+
+@dataclass(frozen=True)
+class StartPose:
+    """Where the walk starts: position (m) and heading of the IMU's x axis (rad) at the first footfall."""
+
+    position: tuple[float, float, float] = ORIGIN
+    heading: float = 0.0
+
+
+@dataclass(frozen=True)
+class PdrParams:
+    """Dead reckoning's settings.
+
+    Attributes
+    ----------
+    bias_s : s, T_bias at rest before the walk
+    tilt_gain : share of the tilt error seen over a stride that is corrected at its end
+    max_gap_s : s, longest hole between samples that is bridged (the next sample is held over it)
+    stance : how moments of rest become stances
+    detector : what rest is
+    """
+
+    bias_s: float = 25.0
+    tilt_gain: float = 0.1
+    max_gap_s: float = 0.25
+    stance: StanceParams = field(default_factory=StanceParams)
+    detector: Detector = field(default_factory=ThresholdDetector)
+
+    def __post_init__(self) -> None:
+        if not 0 < self.bias_s < math.inf:
+            raise InputError(f"pdr: bias_s = {self.bias_s}, expected a positive number of seconds")
+        if not 0 <= self.tilt_gain <= 1:
+            raise InputError(f"pdr: tilt_gain = {self.tilt_gain}, expected 0 to 1")
+
+
+@dataclass(frozen=True)
+class Rest:
+    """What the still start says.
+
+    Attributes
+    ----------
+    gyro_bias : (3,) rad/s, the static bias eps0 as a vector in the body (HDR Eq. 1)
+    force : (3,) m/s2, mean specific force: which way is up
+    last : index of the last sample that was averaged
+    """
+
+    gyro_bias: np.ndarray
+    force: np.ndarray
+    last: int
+
+
+def static_bias(recording: Recording, bias_s: float) -> Rest:
+    """Average the first `bias_s` seconds, which must be motionless (HDR paper, section 2, T_bias).
+
+    Raises
+    ------
+    InputError
+        The recording is shorter, moves within that time, or does not measure gravity in m/s2.
+    """
+    t = recording.t - recording.t[0]
+    if t[-1] < bias_s - 1e-6:
+        raise InputError(
+            f"recording: lasts {t[-1]:.4g} s, shorter than the {bias_s:g} s at rest for the static bias"
+        )
+    last = int(np.searchsorted(t, bias_s + 1e-6)) - 1
+    # Row 0 is the start: its sample belongs to time before the record.
+    gyro, accel = recording.gyro[1 : last + 1], recording.accel[1 : last + 1]
+    if len(gyro) == 0:
+        raise InputError(f"recording: no sample within the first {bias_s:g} s")
+    # Means of half a second: sensor noise averages out, a foot that is put down does not.
+    block = np.minimum(t[1 : last + 1] // REST_BLOCK_S, max(int(bias_s / REST_BLOCK_S) - 1, 0)).astype(int)
+    used, first, count = np.unique(block, return_index=True, return_counts=True)
+    for name, values, limit in (("gyro", gyro, REST_GYRO), ("accel", accel, REST_ACCEL)):
+        blocks = np.add.reduceat(values, first, axis=0) / count[:, None]
+        moved = np.linalg.norm(blocks - blocks[0], axis=1) > limit
+        if moved.any():
+            when = used[np.argmax(moved)] * REST_BLOCK_S
+            raise InputError(
+                f"recording: the IMU moves at t = {when:g} s ({name}), "
+                f"but the static bias needs the first {bias_s:g} s at rest"
+            )
+    rest = Rest(gyro_bias=gyro.mean(axis=0), force=accel.mean(axis=0), last=last)
+    if abs(np.linalg.norm(rest.force) - GRAVITY) > REST_GRAVITY:
+        raise InputError(
+            f"recording: the accelerometers measure {np.linalg.norm(rest.force):.3g} at rest, "
+            f"expected {GRAVITY:.3g} +- {REST_GRAVITY:g} m/s2"
+        )
+    return rest
+
+
+def level_attitude(force: np.ndarray) -> np.ndarray:
+    """Attitude (4,) in which `force` points up and the body's x axis has heading 0.
+
+    Raises
+    ------
+    InputError
+        The x axis is within 10 degrees of vertical, so that it has no heading.
+    """
+    up = force / np.linalg.norm(force)
+    forward = np.array([1.0, 0.0, 0.0]) - up[0] * up
+    level = float(np.linalg.norm(forward))
+    if level < MIN_LEVEL:
+        raise InputError(
+            f"recording: at rest the IMU's x axis is {math.degrees(math.asin(level)):.1f} deg from vertical, "
+            f"expected at least {math.degrees(math.asin(MIN_LEVEL)):.0f} deg, or it has no heading"
+        )
+    forward /= level
+    rotation = Rotation.from_matrix(np.array([forward, np.cross(up, forward), up]))
+    return np.asarray(rotation.as_quat(scalar_first=True))
+
+
+def dead_reckon(
+    recording: Recording, params: PdrParams | None = None, start: StartPose | None = None
+) -> Footfalls:
+    """Dead-reckon a recording that begins at rest.
+
+    Parameters
+    ----------
+    recording : at least `params.bias_s` seconds at rest, then a walk
+    start : position and heading of row 0
+
+    Returns
+    -------
+    Footfalls
+        Row 0 is the end of the still start, then one row a stance.
+
+    Raises
+    ------
+    InputError
+        No rest at the start, no stride after it, or a hole in the samples that is too long.
+
+    Notes
+    -----
+    From one instant of zero velocity to the next, a stride of duration T:
+
+    - attitude, velocity and position are integrated with the static bias removed (HDR Eq. 2);
+    - the velocity v that is left at the end must be zero: v is taken back linearly in time, which takes
+      v T / 2 from the displacement (ZUPT on the velocity only);
+    - the same v says how far the attitude was tilted: the mean force over a stride that begins and ends
+      at rest points up, so the tilt error is (v_y, -v_x, 0) / (g T), of which `tilt_gain` is corrected.
+      The paper bounds tilt with the accelerometers during footfall; there the foot still turns and
+      accelerates, which biases that tilt by a degree, while a whole stride is free of it.
+    - the vertical component of every correction is zero: heading is the gyro's alone. It is read at
+      footfalls only: in swing the foot pitches through the vertical, where heading means nothing.
+
+    The raw rate is the increment of that heading over T_i, not an integral of the body's or the world's
+    vertical rate, which a coning foot drives away by degrees a stride.
+    """
+    params, start = params or PdrParams(), start or StartPose()
+    rest = static_bias(recording, params.bias_s)
+    stances = _stances_after(recording, rest, params)
+    resets = stances.resets
+    _refuse_gaps(recording.t, int(resets[0]), int(resets[-1]), params.max_gap_s)
+    quaternion, position = _kernels.reckon(
+        np.ascontiguousarray(recording.t, dtype=float),
+        np.ascontiguousarray(recording.gyro - rest.gyro_bias),
+        np.ascontiguousarray(recording.accel, dtype=float),
+        level_attitude(rest.force),
+        resets,
+        params.tilt_gain,
+    )
+    quaternion, position = quaternion[stances.footfalls], position[stances.footfalls]
+    heading = np.unwrap(heading_of(quaternion))
+    turn = Rotation.from_rotvec([0.0, 0.0, start.heading - heading[0]])
+    position = turn.apply(position - position[0]) + np.asarray(start.position)
+    heading = heading - heading[0] + start.heading
+
+    t = recording.t[resets[stances.footfalls]]
+    interval = np.diff(t, prepend=t[0])
+    steps = np.diff(position, axis=0, prepend=position[:1])
+    rate = np.zeros_like(t)
+    rate[1:] = np.diff(heading) / interval[1:]
+    return Footfalls(
+        t=t,
+        interval=interval,
+        distance=np.hypot(*steps[:, :2].T),
+        rate=rate,
+        position=position,
+        heading=heading,
+    )
+
+
+def _stances_after(recording: Recording, rest: Rest, params: PdrParams) -> Stances:
+    """Stances from the still start on: reset 0 ends its averaged part, footfall 0 is its last reset."""
+    t = recording.t[1:]
+    score = params.detector(t, recording.gyro[1:] - rest.gyro_bias, recording.accel[1:])
+    # The averaged part is at rest, whatever the detector thinks of it.
+    score = np.where(np.arange(len(t)) < rest.last, np.minimum(score, 0.5), score)
+    found = find_stances(t, score, params.stance)
+    resets, footfalls = found.resets + 1, found.footfalls
+    later = resets > rest.last
+    skipped = int(np.count_nonzero(~later))
+    resets = np.concatenate([[rest.last], resets[later]])
+    footfalls = np.maximum(
+        footfalls - skipped + 1, 0
+    )  # 0 where the foot left straight from the averaged part
+    if len(footfalls) < 2:
+        raise InputError(f"recording: no stride found after the {params.bias_s:g} s at rest")
+    return Stances(resets=resets, footfalls=footfalls)
+
+
+def _refuse_gaps(t: np.ndarray, first: int, last: int, max_gap_s: float) -> None:
+    step = np.diff(t[first : last + 1])
+    worst = int(np.argmax(step))
+    if step[worst] > max_gap_s:
+        raise InputError(
+            f"recording: no samples for {step[worst]:.3g} s after t = {t[first + worst]:.6g} s, "
+            f"dead reckoning bridges at most {max_gap_s:g} s"
+        )
