@@ -1,0 +1,222 @@
+"""A scenario: who walks where, how fast and how regularly, in what cold, with which sensor, how often."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path as File
+from typing import Annotated
+
+from pydantic import Field
+
+from footfall.errors import InputError
+from footfall.models.body import MOUNTS
+from footfall.models.imu import TemperatureProfile, load_spec, stock_specs
+from footfall.models.subject import SUBJECTS, Subject
+from footfall.scenarios.path import Path, PathSpec, build_path
+from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height
+from footfall.simulate.journey import PHYSICS_STEP, Plan
+from footfall.simulate.truth import divisor
+from footfall.toml import Strict, read_toml
+
+STOCK = File(__file__).parent / "stock"
+
+Seed = Annotated[int, Field(ge=0)]
+
+
+class SubjectTable(Strict):
+    """A subject of the scenario's own; `Subject` says which bodies can walk."""
+
+    name: Annotated[str, Field(min_length=1)]
+    height_m: float = SUBJECTS["reference"].height_m
+    mass_kg: float = SUBJECTS["reference"].mass_kg
+
+
+class GaitTable(Strict):
+    """How the path is walked. `variability` 1 is that of people, 0 a metronome's."""
+
+    pace_m_s: float = Field(ge=1.0, le=1.5)
+    variability: float = Field(1.0, ge=0, le=1.5)
+    action_noise: float = Field(0.0, ge=0, le=0.3)
+    wander_m: float = Field(0.0, ge=0, le=0.5)
+    wander_time_s: float = Field(4.0, ge=0.5, le=60)
+
+
+class TemperatureTable(Strict):
+    """The sensor warms up indoors and is carried out just before its calibration."""
+
+    indoors_degC: float = Field(ge=-40, le=85)
+    outdoors_degC: float = Field(ge=-40, le=85)
+
+
+class SensorTable(Strict):
+    """What is on the shoe: `imu` is a stock name or a data sheet's path relative to the scenario's file."""
+
+    imu: Annotated[str, Field(min_length=1)]
+    mount: str = "instep"
+    rate_hz: float = Field(200.0, ge=50)
+    calibration_s: float = Field(30.0, ge=0, le=600)
+
+
+class SeedTable(Strict):
+    """Walk i of `walks` has the seed base + i; `units` are seeds of sensors, used in turn."""
+
+    base: Seed
+    walks: Annotated[int, Field(ge=1)] = 1
+    units: Annotated[tuple[Seed, ...] | None, Field(strict=False, min_length=1)] = None
+
+
+class TerrainTable(Strict):
+    """The ground follows the path's slopes on a grid of cells this wide; a level path has level ground."""
+
+    cell_m: Annotated[float, Field(ge=0.2, le=2.0)] = 0.5
+
+
+class ScenarioFile(Strict):
+    """A scenario as it stands in TOML."""
+
+    description: Annotated[str, Field(min_length=1)]
+    subjects: Annotated[tuple[str | SubjectTable, ...], Field(strict=False, min_length=1)]
+    path: PathSpec
+    gait: GaitTable
+    temperature: TemperatureTable
+    sensor: SensorTable
+    seeds: SeedTable
+    terrain: TerrainTable = TerrainTable()
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """Everything that a run needs to know beforehand.
+
+    Attributes
+    ----------
+    name : a stock scenario's, or its file's without the ending
+    description : one line for people
+    path : where to walk
+    cell : m, of the terrain's grid
+    subjects : used in turn from walk to walk
+    pace : m/s, asked of the walker on straights
+    variability : of the gait, 1 = that of people; action_noise : SD of the noise on the walker's actions
+    wander, wander_time : m and s, slow lateral wander of the steering's aim
+    temperature : of the air around the sensor from the recording's start
+    imu : stock name or path of a data sheet
+    mount : name of a mounting on the shoe
+    rate_hz : of truth and recording
+    calibration : s of motionless recording before the first footfall
+    seed : of walk 0; walks : how many by default
+    units : seeds of sensors, used in turn; None: each walk's own seed
+    """
+
+    name: str
+    description: str
+    path: Path
+    cell: float
+    subjects: tuple[Subject, ...]
+    pace: float
+    variability: float
+    action_noise: float
+    wander: float
+    wander_time: float
+    temperature: TemperatureProfile
+    imu: str
+    mount: str
+    rate_hz: float
+    calibration: float
+    seed: int
+    walks: int
+    units: tuple[int, ...] | None
+
+    @cached_property
+    def terrain(self) -> Terrain | None:
+        """The ground, or None where the path is level; built at the first call."""
+        return build_terrain(self.path, self.cell)
+
+    def unit_seed(self, walk: int) -> int:
+        """Seed of the sensor that is worn on a walk."""
+        return self.units[walk % len(self.units)] if self.units else self.seed + walk
+
+    def plan(self, walk: int) -> Plan:
+        """What the simulator needs for walk number `walk` (from 0)."""
+        return Plan(
+            name=self.name,
+            route=self.path.route,
+            subject=self.subjects[walk % len(self.subjects)],
+            mount=MOUNTS[self.mount],
+            ground=self.terrain,
+            pace=self.pace,
+            variability=self.variability,
+            action_noise=self.action_noise,
+            wander=self.wander,
+            wander_time=self.wander_time,
+            calibration=self.calibration,
+            rate_hz=self.rate_hz,
+            seed=self.seed + walk,
+        )
+
+
+def stock_scenarios() -> tuple[str, ...]:
+    """Names of the scenarios that come with Footfall."""
+    return tuple(sorted(file.stem for file in STOCK.glob("*.toml")))
+
+
+def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
+    """A stock scenario by name, or anyone's by the path of its TOML file.
+
+    Raises
+    ------
+    InputError
+        Neither a stock name nor a file; or what cannot be walked, with file, key, value and reason.
+    """
+    if (name := os.fspath(name_or_path)) in stock_scenarios():
+        file = STOCK / f"{name}.toml"
+    elif not (file := File(name)).is_file():
+        stock = ", ".join(stock_scenarios())
+        raise InputError(f"scenario {name!r}: neither a stock scenario ({stock}) nor a TOML file that exists")
+    content = read_toml(file, ScenarioFile)
+    try:
+        return _scenario(file, content)
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from None
+
+
+def _scenario(file: File, content: ScenarioFile) -> Scenario:
+    path = build_path(content.path)
+    require_one_height(path)
+    gait, sensor, seeds = content.gait, content.sensor, content.seeds
+    if sensor.mount not in MOUNTS:
+        raise InputError(f"sensor.mount = {sensor.mount!r}: expected one of {', '.join(MOUNTS)}")
+    divisor(PHYSICS_STEP, sensor.rate_hz)
+    imu = sensor.imu if sensor.imu in stock_specs() else str(file.parent / sensor.imu)
+    load_spec(imu)
+    return Scenario(
+        name=file.stem,
+        description=content.description,
+        path=path,
+        cell=content.terrain.cell_m,
+        subjects=tuple(_subject(i, entry) for i, entry in enumerate(content.subjects)),
+        pace=gait.pace_m_s,
+        variability=gait.variability,
+        action_noise=gait.action_noise,
+        wander=gait.wander_m,
+        wander_time=gait.wander_time_s,
+        temperature=TemperatureProfile.step(
+            content.temperature.indoors_degC, content.temperature.outdoors_degC
+        ),
+        imu=imu,
+        mount=sensor.mount,
+        rate_hz=sensor.rate_hz,
+        calibration=sensor.calibration_s,
+        seed=seeds.base,
+        walks=seeds.walks,
+        units=seeds.units,
+    )
+
+
+def _subject(i: int, entry: str | SubjectTable) -> Subject:
+    if isinstance(entry, SubjectTable):
+        return Subject(entry.name, height_m=entry.height_m, mass_kg=entry.mass_kg)
+    if entry not in SUBJECTS:
+        raise InputError(f"subjects.{i} = {entry!r}: expected one of {', '.join(SUBJECTS)}, or a table")
+    return SUBJECTS[entry]

@@ -1,0 +1,197 @@
+"""How far a track is off the truth.
+
+Nothing is fitted. What every method is given is the start pose: the first row of the track is laid on the
+truth at its time, by a shift on the plane and a turn about the vertical, which is the identity for a track
+that began there. Errors are estimate - truth; positions and distances are horizontal.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from footfall.errors import InputError
+from footfall.pdr.track import Track
+from footfall.simulate.truth import heading_of
+from footfall.simulate.walk import Walk
+
+TIME_SLACK = 0.1  # s; an IMU's clock may run off by this much over a walk
+UNCOVERED = 5.0  # s; a track that leaves out more of the walk's start or end is not judged
+
+
+@dataclass(frozen=True)
+class Score:
+    """Errors of one track, or means over several.
+
+    Attributes
+    ----------
+    heading_error_mean_deg, heading_error_final_deg : the absolute heading error, counted in full beyond
+        180 deg: mean over the track's rows, and at the last one (the HDR paper's average and final E_psi)
+    return_error_pct : distance between the ends of track and truth, in % of the distance travelled (P_err of
+        Deng et al. 2018, section 3.2, where it is from the expected end, so that the path need not be closed)
+    distance_error_pct : signed, in %: sums of the distances between rows, estimate against truth
+    position_rmse_m : root mean square distance between track and truth at the track's rows
+    position_error_final_m : distance between the ends of track and truth
+    """
+
+    heading_error_mean_deg: float
+    heading_error_final_deg: float
+    return_error_pct: float
+    distance_error_pct: float
+    position_rmse_m: float
+    position_error_final_m: float
+
+    def as_dict(self) -> dict[str, float]:
+        """Plain numbers by name, for JSON."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class Improvement:
+    """By how many times a method's heading errors are smaller; infinite when nothing is left of them."""
+
+    mean: float
+    final: float
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A track beside the truth, row by row.
+
+    Attributes
+    ----------
+    t : (n,) s
+    estimate, truth : (n, 2) m, on the plane
+    heading_error : (n,) rad, estimate - truth, continuous; 0 in row 0
+    """
+
+    t: np.ndarray
+    estimate: np.ndarray
+    truth: np.ndarray
+    heading_error: np.ndarray
+
+
+def compare(track: Track, walk: Walk) -> Comparison:
+    """Lay the start of a track on the truth and read the truth at the track's times.
+
+    The true heading is read at the track's rows alone: between stances the foot pitches through the vertical,
+    where heading means nothing. Whole turns are told by the walk's own footfalls, so that an error of more
+    than half a turn is not mistaken for a small one.
+
+    Raises
+    ------
+    InputError
+        The track is not finite, is too short, lies outside the walk's time or covers only a part of it.
+    """
+    _require_scorable(track, walk)
+    t = np.clip(track.t, walk.t[0], walk.t[-1])
+    truth = np.column_stack([np.interp(t, walk.t, walk.position[:, axis]) for axis in (0, 1)])
+
+    yaw = heading_of(_quaternion_at(walk, t))
+    near = np.interp(t, walk.footfalls.t, walk.footfalls.heading)
+    heading = near + _wrap(yaw - near)
+    error = np.unwrap(track.heading) - heading
+    turn = error[0]
+
+    offset = track.position[:, :2] - track.position[0, :2]
+    c, s = math.cos(turn), math.sin(turn)
+    estimate = truth[0] + offset @ np.array([[c, -s], [s, c]])  # turned by -turn
+    return Comparison(track.t, estimate, truth, error - turn)
+
+
+def score(track: Track, walk: Walk) -> Score:
+    """Judge a track against the walk that it was made from.
+
+    Raises
+    ------
+    InputError
+        As `compare`; or nothing was walked.
+    """
+    row = compare(track, walk)
+    error_deg = np.degrees(np.abs(row.heading_error))
+    off = np.hypot(*(row.estimate - row.truth).T)
+    travelled, estimated = (
+        float(np.hypot(*np.diff(points, axis=0).T).sum()) for points in (row.truth, row.estimate)
+    )
+    if travelled == 0:
+        raise InputError("track: the truth does not move between its first and last row")
+    return Score(
+        heading_error_mean_deg=float(error_deg.mean()),
+        heading_error_final_deg=float(error_deg[-1]),
+        return_error_pct=float(100 * off[-1] / travelled),
+        distance_error_pct=100 * (estimated - travelled) / travelled,
+        position_rmse_m=float(np.sqrt(np.mean(off**2))),
+        position_error_final_m=float(off[-1]),
+    )
+
+
+def mean_score(scores: Sequence[Score]) -> Score:
+    """Mean of each figure over walks.
+
+    Raises
+    ------
+    InputError
+        No scores.
+    """
+    if not scores:
+        raise InputError("mean score: no walks were scored")
+    rows = [score.as_dict() for score in scores]
+    return Score(**{name: float(np.mean([row[name] for row in rows])) for name in rows[0]})
+
+
+def improvement(before: Score, after: Score) -> Improvement:
+    """Heading errors before over heading errors after. Of means: the ratio of means, as in the HDR paper."""
+
+    def ratio(a: float, b: float) -> float:
+        if b == 0:
+            return math.inf if a > 0 else 1.0
+        return a / b
+
+    return Improvement(
+        mean=ratio(before.heading_error_mean_deg, after.heading_error_mean_deg),
+        final=ratio(before.heading_error_final_deg, after.heading_error_final_deg),
+    )
+
+
+def _require_scorable(track: Track, walk: Walk) -> None:
+    if len(track) < 2:
+        raise InputError(f"track: {len(track)} rows, expected at least 2")
+    for name in ("t", "position", "heading"):
+        values = getattr(track, name)
+        if not np.isfinite(values).all():
+            row = int(np.argwhere(~np.isfinite(values))[0][0])
+            raise InputError(f"track: {name} is not finite at row {row}")
+    step = np.diff(track.t)
+    if (step <= 0).any():
+        raise InputError(f"track: t does not increase at row {int(np.argmax(step <= 0)) + 1}")
+    begin, end = float(track.t[0]), float(track.t[-1])
+    if begin < walk.t[0] - TIME_SLACK or end > walk.t[-1] + TIME_SLACK:
+        raise InputError(
+            f"track: {begin:.2f} to {end:.2f} s lies outside the walk, which lasts from {walk.t[0]:.2f} "
+            f"to {walk.t[-1]:.2f} s"
+        )
+    first, last = float(walk.footfalls.t[0]), float(walk.footfalls.t[-1])
+    if begin > first + UNCOVERED or end < last - UNCOVERED:
+        raise InputError(
+            f"track: {begin:.2f} to {end:.2f} s covers only a part of the walk, whose footfalls last from "
+            f"{first:.2f} to {last:.2f} s"
+        )
+
+
+def _quaternion_at(walk: Walk, t: np.ndarray) -> np.ndarray:
+    """(n, 4) attitude at (n,) times: linear between samples, which at a stance hardly differ."""
+    i = np.clip(np.searchsorted(walk.t, t) - 1, 0, len(walk.t) - 2)
+    before, after = walk.quaternion[i], walk.quaternion[i + 1]
+    # q and -q are one attitude.
+    after = np.where((before * after).sum(axis=1, keepdims=True) < 0, -after, after)
+    share = ((t - walk.t[i]) / (walk.t[i + 1] - walk.t[i]))[:, None]
+    between = (1 - share) * before + share * after
+    return between / np.linalg.norm(between, axis=1, keepdims=True)
+
+
+def _wrap(angle: np.ndarray) -> np.ndarray:
+    """To -pi..pi."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi
