@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.strapdown import GRAVITY, heading_of
 from footfall.recording import Recording
 
@@ -137,4 +138,21 @@ def walk(
     position = start[0] + np.concatenate([np.zeros((1, 3)), moved])
     return SyntheticWalk(
         t, position, quaternion, velocity, gyro, accel, times[::2] + np.where(rest > 0, rest, 0) / 2
+    )
+
+
+def footfalls(rate: np.ndarray, interval: np.ndarray | float = 1.1, speed: float = 1.4) -> Footfalls:
+    """Footfalls of strides with these raw rates (rad/s), walked as dead reckoning would see them."""
+    raw = np.concatenate([[0.0], rate])
+    t_i = np.concatenate([[0.0], np.broadcast_to(interval, np.shape(rate))])
+    heading = np.cumsum(raw * t_i)
+    middle = heading - raw * t_i / 2
+    steps = speed * t_i[:, None] * np.column_stack([np.cos(middle), np.sin(middle), np.zeros_like(raw)])
+    return Footfalls(
+        t=np.cumsum(t_i),
+        interval=t_i,
+        distance=speed * t_i,
+        rate=raw,
+        position=np.cumsum(steps, axis=0),
+        heading=heading,
     )
