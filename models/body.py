@@ -298,10 +298,16 @@ def _add_leg(pelvis: mujoco.MjsBody, side: str, subject: Subject) -> None:
     # Boxes round each contact, for the touch sensors.
     box = mujoco.mjtGeom.mjGEOM_BOX
     foot.add_site(
-        name=f"heel_{side}", type=box, pos=[-0.045 * s, 0, sole + 0.02 * s], size=np.array([0.04, 0.06, 0.04]) * s
+        name=f"heel_{side}",
+        type=box,
+        pos=[-0.045 * s, 0, sole + 0.02 * s],
+        size=np.array([0.04, 0.06, 0.04]) * s,
     )
     foot.add_site(
-        name=f"ball_{side}", type=box, pos=[0.125 * s, 0, sole + 0.02 * s], size=np.array([0.03, 0.07, 0.04]) * s
+        name=f"ball_{side}",
+        type=box,
+        pos=[0.125 * s, 0, sole + 0.02 * s],
+        size=np.array([0.03, 0.07, 0.04]) * s,
     )
     toe.add_site(name=f"toe_{side}", type=box, pos=[0.055 * s, 0, 0], size=np.array([0.04, 0.06, 0.04]) * s)
 

@@ -78,9 +78,7 @@ class Task:
     ) -> None:
         models = [build_body(subject, timestep=timestep, mount=mount) for subject in subjects]
         self.rng, self.difficulty = rng, difficulty
-        self.walkers = Walkers(
-            models, subjects, gains, variability=np.zeros(n), rng=rng, threads=threads
-        )
+        self.walkers = Walkers(models, subjects, gains, variability=np.zeros(n), rng=rng, threads=threads)
         self.until_command = np.zeros(n)
         self.terms: dict[str, np.ndarray] = {}
 
@@ -253,7 +251,7 @@ class WalkVectorEnv(gym.vector.VectorEnv):
         )
         self._age = np.zeros(num_envs)
 
-    def reset(  # type: ignore[override]
+    def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Start every walker anew, at staggered ages so that episodes do not end together."""

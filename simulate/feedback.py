@@ -17,7 +17,9 @@ from footfall.models.gait import INDEX
 
 def _mirror(names: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
     """Permutation and signs that mirror a per-joint vector: legs change sides, lumbar roll and yaw their sign."""
-    swapped = [name[:-1] + {"r": "l", "l": "r"}[name[-1]] if name[-2:] in ("_r", "_l") else name for name in names]
+    swapped = [
+        name[:-1] + {"r": "l", "l": "r"}[name[-1]] if name[-2:] in ("_r", "_l") else name for name in names
+    ]
     signs = np.array([-1.0 if name in ("lumbar_roll", "lumbar_yaw") else 1.0 for name in names])
     return np.array([names.index(name) for name in swapped]), signs
 
@@ -104,7 +106,9 @@ class Balance:
 
 
 _LUMBAR_ROLL, _LUMBAR_PITCH = INDEX["lumbar_roll"], INDEX["lumbar_pitch"]
-_STANCE = {joint: INDEX[f"{joint}_r"] for joint in ("hip_flexion", "hip_adduction", "hip_rotation", "knee", "ankle")}
+_STANCE = {
+    joint: INDEX[f"{joint}_r"] for joint in ("hip_flexion", "hip_adduction", "hip_rotation", "knee", "ankle")
+}
 _SWING = {joint: INDEX[f"{joint}_l"] for joint in _STANCE}
 _STANCE_SUBTALAR = INDEX["subtalar_r"]
 
@@ -126,17 +130,23 @@ def feedback(gains: np.ndarray, b: Balance) -> np.ndarray:
     late = np.clip((b.step_phase - 0.5) / 0.2, 0, 1)
     out = np.zeros((len(b.pitch), N_SERVOS))
     out[:, _LUMBAR_ROLL] = -g.torso_roll * b.roll - g.torso_roll_rate * b.roll_rate
-    out[:, _LUMBAR_PITCH] = -g.torso_pitch * b.pitch - g.torso_pitch_rate * b.pitch_rate + g.torso_pitch_offset
+    out[:, _LUMBAR_PITCH] = (
+        -g.torso_pitch * b.pitch - g.torso_pitch_rate * b.pitch_rate + g.torso_pitch_offset
+    )
     out[:, _STANCE["hip_flexion"]] = (
         -g.stance_hip_pitch * b.pitch - g.stance_hip_pitch_rate * b.pitch_rate + g.stance_hip_offset
     )
     out[:, _STANCE["hip_adduction"]] = (
         g.stance_hip_roll * b.roll + g.stance_hip_roll_rate * b.roll_rate + g.stance_adduction_offset
     )
-    out[:, _STANCE["hip_rotation"]] = g.stance_yaw * b.yaw_error + g.stance_yaw_rate * (b.yaw_rate - b.turn_rate)
+    out[:, _STANCE["hip_rotation"]] = g.stance_yaw * b.yaw_error + g.stance_yaw_rate * (
+        b.yaw_rate - b.turn_rate
+    )
     out[:, _STANCE["knee"]] = g.stance_knee_offset
     out[:, _STANCE["ankle"]] = (
-        -late * g.push_off + late * g.push_off_speed * b.speed_error + g.ankle_speed * (1 - late) * b.speed_error
+        -late * g.push_off
+        + late * g.push_off_speed * b.speed_error
+        + g.ankle_speed * (1 - late) * b.speed_error
     )
     out[:, _STANCE_SUBTALAR] = g.subtalar_velocity * b.lateral_velocity + g.subtalar_position * (
         b.foot_y - FOOT_OFFSET

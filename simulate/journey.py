@@ -166,7 +166,9 @@ def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | 
             if on_progress is not None and step % 100 == 0:
                 on_progress(max(0.0, pursuit.progress))
         else:
-            raise FallError(f"{plan.name}: the walker got stuck at {pursuit.progress:.0f} m (seed {plan.seed})")
+            raise FallError(
+                f"{plan.name}: the walker got stuck at {pursuit.progress:.0f} m (seed {plan.seed})"
+            )
     finally:
         walkers.close()
     record = np.concatenate(chunks)
@@ -185,7 +187,9 @@ def _hold(record: _Record, first: int, last: int, duration: float) -> _Record:
     return _Record(held(record.position), held(record.quaternion), held(record.contact))
 
 
-def walk(plan: Plan, policy: Policy | None = None, on_progress: Callable[[float], None] | None = None) -> Walk:
+def walk(
+    plan: Plan, policy: Policy | None = None, on_progress: Callable[[float], None] | None = None
+) -> Walk:
     """The truth of one walk along the plan's route.
 
     The walk begins at the first footfall on the route (after a run-up that is not part of it), preceded by

@@ -21,7 +21,11 @@ _HIDDEN = 128
 
 def perceptron(n_in: int, n_out: int, last_gain: float) -> torch.nn.Sequential:
     """Two hidden ELU layers of 128, orthogonal initialisation."""
-    layers = [torch.nn.Linear(n_in, _HIDDEN), torch.nn.Linear(_HIDDEN, _HIDDEN), torch.nn.Linear(_HIDDEN, n_out)]
+    layers = [
+        torch.nn.Linear(n_in, _HIDDEN),
+        torch.nn.Linear(_HIDDEN, _HIDDEN),
+        torch.nn.Linear(_HIDDEN, n_out),
+    ]
     for layer in layers:
         torch.nn.init.orthogonal_(layer.weight)
         torch.nn.init.zeros_(layer.bias)
@@ -73,7 +77,9 @@ class Learner:
         torch.set_rng_state(state["torch_rng"])
 
     @torch.no_grad()
-    def collect(self, env: WalkVectorEnv, observation: np.ndarray) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    def collect(
+        self, env: WalkVectorEnv, observation: np.ndarray
+    ) -> tuple[dict[str, np.ndarray], np.ndarray]:
         """Walk HORIZON control steps with exploration.
 
         Returns
@@ -134,7 +140,9 @@ class Learner:
                 z = (flat["action"][rows] - mean) / self.log_sd.exp()
                 log_probability = -0.5 * (z**2).sum(1) - self.log_sd.sum()
                 ratio = (log_probability - flat["log_probability"][rows]).exp()
-                gain = torch.min(ratio * advantage[rows], ratio.clamp(1 - CLIP, 1 + CLIP) * advantage[rows]).mean()
+                gain = torch.min(
+                    ratio * advantage[rows], ratio.clamp(1 - CLIP, 1 + CLIP) * advantage[rows]
+                ).mean()
                 value_error = ((self.value(seen)[:, 0] - flat["return"][rows]) ** 2).mean()
                 loss = -gain + 0.5 * value_error + 0.0045 * (mean**2).sum(1).mean()
                 self.optimiser.zero_grad()

@@ -69,9 +69,9 @@ class Pursuit:
         stray = float(np.sqrt(distance2[nearest]))
         if stray > STRAY_LIMIT:
             raise StrayError(f"the walker strayed {stray:.1f} m off its path at {self.progress:.0f} m")
-        self._offset = self._decay * self._offset + self._wander * np.sqrt(
-            1 - self._decay**2
-        ) * float(self.rng.standard_normal())
+        self._offset = self._decay * self._offset + self._wander * np.sqrt(1 - self._decay**2) * float(
+            self.rng.standard_normal()
+        )
         aim = min(self._row + self._ahead, len(route.s) - 1)
         aim_x = route.x[aim] - self._offset * np.sin(route.heading[aim])
         aim_y = route.y[aim] + self._offset * np.cos(route.heading[aim])

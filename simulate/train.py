@@ -12,6 +12,7 @@ import json
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import cma
 import numpy as np
@@ -41,7 +42,9 @@ def tune_gains(seed: int, generations: int) -> np.ndarray:
     )
     start, scale = np.array(GAIN_START), np.array(GAIN_SCALE)
     search = cma.CMAEvolutionStrategy(
-        np.zeros(len(start)), 0.35, {"popsize": _CANDIDATES, "verbose": -9, "seed": seed + 1, "CMA_diagonal": 30}
+        np.zeros(len(start)),
+        0.35,
+        {"popsize": _CANDIDATES, "verbose": -9, "seed": seed + 1, "CMA_diagonal": 30},
     )
     idle = np.zeros((n, N_ACTION))
     for generation in range(generations):
@@ -62,7 +65,10 @@ def tune_gains(seed: int, generations: int) -> np.ndarray:
         score = reward.reshape(_CANDIDATES, _REPEATS)
         search.tell(candidates, list(-(0.7 * score.mean(1) + 0.3 * score.min(1))))
         if generation % 20 == 0:
-            print(f"gains: generation {generation}, mean life {lived.mean() * CONTROL_INTERVAL:.2f} s", flush=True)
+            print(
+                f"gains: generation {generation}, mean life {lived.mean() * CONTROL_INTERVAL:.2f} s",
+                flush=True,
+            )
     task.walkers.close()
     return start + scale * search.result.xfavorite
 
@@ -78,7 +84,7 @@ def schedule(samples: int, total: int) -> tuple[float, Schedule]:
 
 def save_policy(learner: Learner, gains: np.ndarray, path: Path, meta: dict) -> None:
     """Write the policy as npz for `models.policy`."""
-    arrays: dict[str, np.ndarray] = {"feedback_gains": gains, "meta": np.array(json.dumps(meta))}
+    arrays: dict[str, Any] = {"feedback_gains": gains, "meta": np.array(json.dumps(meta))}
     for i, layer in enumerate(module for module in learner.policy if isinstance(module, torch.nn.Linear)):
         arrays[f"weight_{i}"] = layer.weight.detach().numpy().T
         arrays[f"bias_{i}"] = layer.bias.detach().numpy()
@@ -139,8 +145,12 @@ def train(out: Path, seed: int, samples: int, generations: int, threads: int) ->
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, required=True, help="folder of checkpoints and log; resumes from it")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "--out", type=Path, required=True, help="folder of checkpoints and log; resumes from it"
+    )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--samples", type=float, default=10e6, help="control steps to learn from")
     parser.add_argument("--generations", type=int, default=200, help="of CMA-ES for the feedback gains")

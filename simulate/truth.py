@@ -12,7 +12,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import binary_closing
 from scipy.spatial.transform import Rotation
 
 from footfall.errors import InputError
@@ -69,7 +68,9 @@ def imu_truth(position: np.ndarray, quaternion: np.ndarray, physics_step: float,
     margin = (factor + 1) // 2
     index = np.arange(margin, len(position) - margin, factor)
     if len(index) < 3:
-        raise InputError(f"walk: {len(position)} physics steps are too few for one output sample of {factor} steps")
+        raise InputError(
+            f"walk: {len(position)} physics steps are too few for one output sample of {factor} steps"
+        )
     interval = factor * physics_step
     # Position half an output interval later and earlier; between two samples when the ratio is odd.
     low, high = factor // 2, (factor + 1) // 2
@@ -97,7 +98,10 @@ def at_rest(truth: ImuTruth, contact: np.ndarray, interval: float) -> np.ndarray
     slow = np.linalg.norm(truth.velocity, axis=1) < REST_SPEED
     quiet = np.linalg.norm(truth.gyro, axis=1) < REST_RATE
     rest = slow & quiet & (contact > REST_CONTACT)
-    rest = binary_closing(rest, np.ones(2 * (int(_BRIDGED_GAP_S / interval) // 2) + 1))
+    for start, end in runs(~rest):
+        inside = start > 0 and end < len(rest)
+        if inside and (end - start) * interval < _BRIDGED_GAP_S:
+            rest[start:end] = True
     for start, end in runs(rest):
         if (end - start) * interval < _SHORTEST_STANCE_S:
             rest[start:end] = False

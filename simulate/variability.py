@@ -36,7 +36,9 @@ class Variability:
         self.value[mask] = 0
         self.target[mask] = 0
 
-    def advance(self, new_step: np.ndarray, half: np.ndarray, interval: float, rng: np.random.Generator) -> None:
+    def advance(
+        self, new_step: np.ndarray, half: np.ndarray, interval: float, rng: np.random.Generator
+    ) -> None:
         """Draw for walkers that begin a step and slew the rest.
 
         Parameters

@@ -94,7 +94,13 @@ def footfalls_path(path: str | os.PathLike[str]) -> Path:
 def write_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
     """Write the walk and, beside it, its footfalls."""
     f = walk.footfalls
-    columns = {"t": f.t, "x": f.position[:, 0], "y": f.position[:, 1], "z": f.position[:, 2], "heading": f.heading}
+    columns = {
+        "t": f.t,
+        "x": f.position[:, 0],
+        "y": f.position[:, 1],
+        "z": f.position[:, 2],
+        "heading": f.heading,
+    }
     # The footfalls first: whoever finds the walk finds them too.
     write_table(footfalls_path(path), columns, FOOTFALL_UNITS, walk.meta)
     pose = np.column_stack([walk.position, walk.quaternion, walk.velocity])

@@ -192,13 +192,17 @@ class Walkers:
 
         qpos, qvel = np.zeros((m, self.qpos.shape[1])), np.zeros((m, self.qvel.shape[1]))
         qpos[:, :3] = position
-        qpos[:, 2] += np.interp(phase, np.linspace(0, 1, len(self.start_height)), self.start_height) * scale + 0.002
+        qpos[:, 2] += (
+            np.interp(phase, np.linspace(0, 1, len(self.start_height)), self.start_height) * scale + 0.002
+        )
         qpos[:, 3] = a * tilt[:, 0] - b * tilt[:, 3]
         qpos[:, 4] = a * tilt[:, 1] - b * tilt[:, 2]
         qpos[:, 5] = a * tilt[:, 2] + b * tilt[:, 1]
         qpos[:, 6] = a * tilt[:, 3] + b * tilt[:, 0]
         joints = np.zeros((m, body.N_JOINTS))
-        joints[:, body.SERVO_JOINT] = gait.reference_angles(phase, amplitude) + self._slope_offset(forward, left)
+        joints[:, body.SERVO_JOINT] = gait.reference_angles(phase, amplitude) + self._slope_offset(
+            forward, left
+        )
         qpos[:, 7:] = joints + joint_noise
         for side in "rl":  # the knee's stop
             knee = 7 + body.JOINTS.index(f"knee_{side}")
@@ -232,7 +236,7 @@ class Walkers:
         self.up_body = np.einsum("nji,nj->ni", self.rotation, self.up)
         self.yaw_error = wrap(self.yaw - self.heading)
         if self.ground is None:
-            height, gradient = 0.0, self.up[:, :2]
+            height, gradient = np.zeros(self.n), self.up[:, :2]
         else:
             height, gradient = self.ground(q[:, 0], q[:, 1])
         self.height = (q[:, 2] - height) / self.scale
@@ -327,7 +331,9 @@ class Walkers:
         self.heading = self.heading + self.turn * dt
         change = np.clip(self.speed_goal - self.speed, -ACCELERATION * dt, ACCELERATION * dt)
         self.speed = self.speed + change
-        self.turn = self.turn + np.clip(self.turn_goal - self.turn, -TURN_ACCELERATION * dt, TURN_ACCELERATION * dt)
+        self.turn = self.turn + np.clip(
+            self.turn_goal - self.turn, -TURN_ACCELERATION * dt, TURN_ACCELERATION * dt
+        )
         along, across = self.velocity()
         self.mean_velocity += (np.stack([along, across], 1) - self.mean_velocity) * (dt / _MEAN_VELOCITY_S)
 
@@ -381,7 +387,10 @@ def _start_heights(model: mujoco.MjModel) -> np.ndarray:
         joints[body.SERVO_JOINT] = gait.reference_angles(np.array(phase % 1), np.array(1.0))
         for side, offset in (("r", 0.0), ("l", 0.5)):
             if 0.3 < (phase + offset) % 1 < 0.63:  # the toe bends under a lifted heel
-                joint = {name: joints[body.JOINTS.index(f"{name}_{side}")] for name in ("hip_flexion", "knee", "ankle")}
+                joint = {
+                    name: joints[body.JOINTS.index(f"{name}_{side}")]
+                    for name in ("hip_flexion", "knee", "ankle")
+                }
                 foot_pitch = joint["hip_flexion"] - joint["knee"] + joint["ankle"]
                 joints[body.JOINTS.index(f"toe_{side}")] = np.clip(-foot_pitch, 0, 0.6)
         data.qpos[:] = 0

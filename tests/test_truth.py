@@ -1,0 +1,104 @@
+"""IMU truth from pose increments: integrating it must give the poses back."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from footfall.errors import InputError
+from footfall.pdr.strapdown import integrate
+from footfall.simulate.truth import GRAVITY, at_rest, divisor, heading_of, imu_truth, runs
+
+STEP = 0.001
+
+
+def swinging_foot(duration: float) -> tuple[np.ndarray, np.ndarray]:
+    """Pose of a foot-like motion: surge, lift, pitching past 85 deg, coning, slow turn."""
+    t = np.arange(0, duration, STEP)
+    w = 2 * np.pi * 0.9
+    position = np.column_stack(
+        [1.2 * t - 0.2 * np.sin(w * t), 0.05 * np.sin(w * t + 0.4), 0.1 * (1 - np.cos(w * t)) / 2]
+    )
+    angles = np.column_stack(
+        [0.1 * t + 0.1 * np.sin(w * t + 1), 0.5 + 1.1 * np.sin(w * t), 0.15 * np.sin(2 * w * t)]
+    )
+    return position, Rotation.from_euler("ZYX", angles).as_quat(scalar_first=True)
+
+
+@pytest.mark.parametrize(("factor", "bound"), [(1, 1e-4), (2, 5e-4), (5, 5e-4), (10, 2e-3)])
+def test_integrating_the_truth_returns_the_poses(factor: int, bound: float) -> None:
+    position, quaternion = swinging_foot(120.0)
+    truth = imu_truth(position, quaternion, STEP, factor)
+    t = np.arange(len(truth.index)) * factor * STEP
+    out = integrate(
+        t,
+        truth.gyro,
+        truth.accel,
+        quaternion=truth.quaternion[0],
+        velocity=truth.velocity[0],
+        position=truth.position[0],
+    )
+    assert np.linalg.norm(out.position - position[truth.index], axis=1).max() < bound
+    same = np.abs((out.quaternion * quaternion[truth.index]).sum(axis=1))
+    assert same.min() > 1 - 1e-12
+
+
+def test_a_still_imu_reads_gravity_and_no_rate() -> None:
+    attitude = Rotation.from_euler("ZYX", [0.3, 0.4, -0.2])
+    quaternion = np.tile(attitude.as_quat(scalar_first=True), (100, 1))
+    truth = imu_truth(np.ones((100, 3)), quaternion, STEP, 5)
+    np.testing.assert_allclose(truth.gyro, 0, atol=1e-12)
+    np.testing.assert_allclose(
+        truth.accel, np.tile(attitude.inv().apply([0, 0, GRAVITY]), (len(truth.gyro), 1))
+    )
+
+
+def test_a_constant_spin_is_read_exactly() -> None:
+    rate = np.array([0.3, -0.5, 0.8])
+    t = np.arange(400) * STEP
+    quaternion = Rotation.from_rotvec(rate * t[:, None]).as_quat(scalar_first=True)
+    truth = imu_truth(np.zeros((400, 3)), quaternion, STEP, 4)
+    np.testing.assert_allclose(truth.gyro, np.tile(rate, (len(truth.gyro), 1)), atol=1e-12)
+
+
+@pytest.mark.parametrize("rate", [300.0, 0.0, -200.0, 2000.0])
+def test_a_rate_that_does_not_divide_the_physics_is_refused(rate: float) -> None:
+    with pytest.raises(InputError, match=r"does not divide the physics rate of 1000 Hz"):
+        divisor(STEP, rate)
+
+
+def test_rates_that_divide() -> None:
+    assert [divisor(STEP, rate) for rate in (1000, 500, 250, 200, 100)] == [1, 2, 4, 5, 10]
+
+
+def test_too_short_a_record_is_refused() -> None:
+    with pytest.raises(InputError, match="too few"):
+        imu_truth(np.zeros((4, 3)), np.tile([1.0, 0, 0, 0], (4, 1)), STEP, 5)
+
+
+def test_runs_are_half_open_and_cover_the_flags() -> None:
+    flag = np.array([True, True, False, True, False, False, True])
+    assert runs(flag).tolist() == [[0, 2], [3, 4], [6, 7]]
+    assert runs(np.zeros(3, dtype=bool)).shape == (0, 2)
+
+
+def test_rest_needs_load_slowness_and_length() -> None:
+    n = 1000
+    quaternion = np.tile([1.0, 0, 0, 0], (n, 1))
+    position = np.zeros((n, 3))
+    position[500:, 0] = np.arange(500) * STEP * 1.0  # 1 m/s from half-way on
+    truth = imu_truth(position, quaternion, STEP, 5)
+    contact = np.ones(len(truth.index))
+    rest = at_rest(truth, contact, 5 * STEP)
+    assert rest[truth.index < 480].all()
+    assert not rest[truth.index > 520].any()
+    assert not at_rest(truth, np.zeros_like(contact), 5 * STEP).any()
+    brief = (truth.index > 100) & (truth.index < 140)  # 40 ms of load
+    assert not at_rest(truth, brief.astype(float), 5 * STEP).any()
+
+
+def test_heading_is_unwrapped() -> None:
+    yaw = np.linspace(0, 4 * np.pi, 50)
+    quaternion = Rotation.from_euler("ZYX", np.column_stack([yaw, 0.3 + 0 * yaw, 0 * yaw])).as_quat(
+        scalar_first=True
+    )
+    np.testing.assert_allclose(heading_of(quaternion), yaw, atol=1e-12)
