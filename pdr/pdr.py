@@ -48,7 +48,7 @@ class PdrParams:
     """
 
     bias_s: float = 25.0
-    tilt_gain: float = 0.1
+    tilt_gain: float = 0.2
     max_gap_s: float = 0.25
     stance: StanceParams = field(default_factory=StanceParams)
     detector: Detector = field(default_factory=ThresholdDetector)

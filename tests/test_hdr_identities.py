@@ -108,7 +108,10 @@ def test_the_basic_controller_is_equations_4_and_5(seed, i_c_deg_s):
     np.testing.assert_allclose(trace(walk, HdrParams.basic(i_c)).heading, heading, atol=TINY)
 
 
-@given(st.lists(st.tuples(seeds, st.integers(2, 120)), min_size=1, max_size=4), st.lists(sets, min_size=1, max_size=5))
+@given(
+    st.lists(st.tuples(seeds, st.integers(2, 120)), min_size=1, max_size=4),
+    st.lists(sets, min_size=1, max_size=5),
+)
 @settings(deadline=None)
 def test_batch_equals_streaming_for_ragged_walks_and_mixed_sets(walks, params):
     walks = [strides(seed, n) for seed, n in walks]

@@ -20,7 +20,7 @@ DEG = np.pi / 180
 
 @pytest.fixture(scope="module")
 def drifting():
-    """Two blocks with corners, and a gyro that drifts by 0.1 deg/s about the vertical once the walk begins."""
+    """Straights and corners, and a gyro that drifts by 0.1 deg/s about the vertical once the walk begins."""
     scatter = 1 * DEG * np.random.default_rng(2).standard_normal(400)
     truth = walk(np.repeat([0, 90, 0, -90], 100) * DEG + scatter)
     up = Rotation.from_quat(truth.quaternion, scalar_first=True).inv().apply([0, 0, 1])
