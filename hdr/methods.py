@@ -115,6 +115,13 @@ METHODS: Mapping[str, Method] = MappingProxyType(
 )
 
 
+def require_methods(names: Iterable[str]) -> None:
+    """Raise InputError when a method of any of these names does not exist."""
+    for name in names:
+        if name not in METHODS:
+            raise InputError(f"method {name!r} is unknown, expected one of {', '.join(METHODS)}")
+
+
 def tracks(reckoning: Reckoning, methods: Iterable[str]) -> dict[str, Track]:
     """Apply several methods to one recording, which is dead-reckoned once.
 
@@ -124,9 +131,7 @@ def tracks(reckoning: Reckoning, methods: Iterable[str]) -> dict[str, Track]:
         No method of that name; or what `dead_reckon` refuses.
     """
     names = list(methods)
-    for name in names:
-        if name not in METHODS:
-            raise InputError(f"method {name!r} is unknown, expected one of {', '.join(METHODS)}")
+    require_methods(names)
     return {name: METHODS[name].run(reckoning) for name in names}
 
 
