@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path as File
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from footfall.errors import InputError
 from footfall.models.body import MOUNTS
@@ -31,6 +31,13 @@ class SubjectTable(Strict):
     name: Annotated[str, Field(min_length=1)]
     height_m: float = SUBJECTS["reference"].height_m
     mass_kg: float = SUBJECTS["reference"].mass_kg
+
+
+# Told apart by hand, so that an error speaks of the one that was meant.
+SubjectEntry = Annotated[
+    Annotated[str, Tag("name")] | Annotated[SubjectTable, Tag("table")],
+    Discriminator(lambda entry: "name" if isinstance(entry, str) else "table"),
+]
 
 
 class GaitTable(Strict):
@@ -77,7 +84,7 @@ class ScenarioFile(Strict):
     """A scenario as it stands in TOML."""
 
     description: Annotated[str, Field(min_length=1)]
-    subjects: Annotated[tuple[str | SubjectTable, ...], Field(strict=False, min_length=1)]
+    subjects: Annotated[tuple[SubjectEntry, ...], Field(strict=False, min_length=1)]
     path: PathSpec
     gait: GaitTable
     temperature: TemperatureTable

@@ -6,27 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from paths import arc, build, corner, straight
 from pydantic import ValidationError
 
 from footfall.errors import InputError
 from footfall.scenarios.path import MAX_LENGTH_M, PathSpec, build_path, elevation, plan
-
-
-def straight(length, grade=0.0):
-    return {"kind": "straight", "length_m": length, "grade_percent": grade}
-
-
-def arc(radius, turn_deg, grade=0.0):
-    return {"kind": "arc", "radius_m": radius, "turn_deg": turn_deg, "grade_percent": grade}
-
-
-def corner(turn_deg, radius=2.5):
-    return {"kind": "corner", "turn_deg": turn_deg, "radius_m": radius}
-
-
-def build(*elements, **keys):
-    return build_path(PathSpec(elements=list(elements), **keys))
-
 
 lengths = st.floats(10, 200)
 # Straights are long enough for the widest corner at both ends: 2 x 3 m x tan 50 deg.

@@ -1,0 +1,230 @@
+"""Scenarios: the stock ones are what they say, a user's own works the same, and mistakes are named."""
+
+import math
+import re
+import shutil
+
+import numpy as np
+import pytest
+
+from footfall.errors import InputError
+from footfall.models.imu import TemperatureProfile, load_spec
+from footfall.models.imu.spec import SHEETS
+from footfall.scenarios.path import MIN_RADIUS_M
+from footfall.scenarios.scenario import STOCK, load_scenario, stock_scenarios
+
+STOCK_NAMES = ("closed-loop", "closed-loop-gentle", "curving", "straight", "turning")
+
+
+def test_the_stock_scenarios():
+    assert stock_scenarios() == STOCK_NAMES
+
+
+@pytest.mark.parametrize("name", STOCK_NAMES)
+def test_stock_scenarios_are_1800_m_and_walkable(name):
+    scenario = load_scenario(name)
+    route = scenario.path.route
+    assert scenario.name == name
+    assert route.length == pytest.approx(1800, abs=0.01)
+    assert np.abs(route.curvature).max() <= 1 / MIN_RADIUS_M + 1e-12
+    assert 1.0 <= scenario.pace <= 1.5
+    assert scenario.wander > 0
+    assert scenario.path.closed == (name in ("closed-loop", "closed-loop-gentle", "turning"))
+    load_spec(scenario.imu)
+
+
+@pytest.mark.parametrize("name", ["closed-loop", "closed-loop-gentle", "turning"])
+def test_loops_close(name):
+    closure = load_scenario(name).path.closure
+    assert closure.gap_m < 1e-3
+    assert abs(closure.heading_deg) < 1e-3
+    assert abs(closure.climb_m) < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("name", "radii"), [("closed-loop", [150, -150, 180]), ("closed-loop-gentle", [300])]
+)
+def test_the_loops_east_street_curves_and_climbs_and_the_west_street_falls(name, radii):
+    path = load_scenario(name).path
+    pieces, route = path.pieces, path.route
+    wide = (pieces.curvature != 0) & (np.abs(pieces.curvature) < 0.1)
+    assert 1 / pieces.curvature[wide] == pytest.approx(radii)
+    assert pieces.length[wide].sum() == pytest.approx(460)
+    x, heading = (
+        np.interp(pieces.start, route.s, route.x),
+        np.interp(pieces.start + 5, route.s, route.heading),
+    )
+    # Up in the east and nowhere else; down to the south in the west.
+    assert pieces.grade[wide] == pytest.approx(0.03, rel=0.1)
+    assert x[wide].min() > 350
+    west = pieces.grade < 0
+    assert pieces.grade[west] == pytest.approx(-0.03, rel=0.1)
+    assert np.degrees(heading[west]) == pytest.approx(270, abs=3)
+    assert np.abs(x[west]).max() < 30
+    assert not pieces.grade[~wide & ~west].any()
+
+
+def test_curving_bends_both_ways_from_10_to_300_m():
+    pieces = load_scenario("curving").path.pieces
+    radii = 1 / pieces.curvature[pieces.curvature != 0]
+    for side in (radii[radii > 0], -radii[radii < 0]):
+        assert [side.min(), side.max()] == pytest.approx([10, 300])
+    assert pieces.length[pieces.curvature == 0].sum() < 200
+
+
+def test_turning_turns_at_right_angles():
+    pieces = load_scenario("turning").path.pieces
+    turns = np.degrees(pieces.curvature * pieces.length)[pieces.curvature != 0]
+    assert np.abs(turns) == pytest.approx(90)
+    assert {True, False} == set((turns > 0).tolist())
+    assert len(turns) == 14
+
+
+def test_a_plan_holds_what_the_file_says():
+    scenario = load_scenario("closed-loop")
+    plans = [scenario.plan(walk) for walk in range(3)]
+    assert [plan.seed for plan in plans] == [1, 2, 3]
+    assert [plan.subject.name for plan in plans] == ["reference", "shorter", "reference"]
+    assert plans[0].route is scenario.path.route
+    assert plans[0].ground is plans[1].ground is scenario.terrain
+    assert (plans[0].pace, plans[0].rate_hz, plans[0].wander) == (scenario.pace, 200, scenario.wander)
+    assert scenario.temperature == TemperatureProfile.step(20.0, -5.0)
+
+
+def test_level_scenarios_have_no_terrain():
+    assert load_scenario("turning").plan(0).ground is None
+
+
+# A user's own file
+
+OWN = """
+description = "mine"
+subjects = ["taller", { name = "me", height_m = 1.72, mass_kg = 80.0 }]
+
+[path]
+elements = [
+  { kind = "straight", length_m = 50 },
+  { kind = "corner", turn_deg = 90.0 },
+  { kind = "straight", length_m = 30.0 },
+]
+
+[gait]
+pace_m_s = 1.2
+
+[temperature]
+indoors_degC = 21.0
+outdoors_degC = 21.0
+
+[sensor]
+imu = "nimu"
+
+[seeds]
+base = 40
+walks = 3
+units = [7, 9]
+"""
+
+
+@pytest.fixture
+def own(tmp_path):
+    """Write OWN with replacements to a file of its own."""
+
+    def write(*replacements):
+        text = OWN
+        for old, new in replacements:
+            assert old in text
+            text = text.replace(old, new)
+        path = tmp_path / "mine.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def test_a_users_file_works_as_a_stock_name_does(own):
+    scenario = load_scenario(own())
+    assert (scenario.name, scenario.description) == ("mine", "mine")
+    assert scenario.path.route.length == pytest.approx(75 + 2.5 * math.pi / 2)
+    assert [subject.name for subject in scenario.subjects] == ["taller", "me"]
+    assert scenario.subjects[1].mass_kg == 80
+    assert [scenario.plan(walk).seed for walk in range(scenario.walks)] == [40, 41, 42]
+    assert [scenario.unit_seed(walk) for walk in range(4)] == [7, 9, 7, 9]
+    assert scenario.calibration == 30
+    without = load_scenario(own(("units = [7, 9]", "")))
+    assert [without.unit_seed(walk) for walk in range(3)] == [40, 41, 42]
+
+
+@pytest.mark.parametrize("name", STOCK_NAMES)
+def test_a_copy_of_a_stock_file_is_the_same_scenario(name, tmp_path):
+    stock, copy = load_scenario(name), load_scenario(shutil.copy(STOCK / f"{name}.toml", tmp_path))
+    assert np.array_equal(copy.path.route.x, stock.path.route.x)
+    assert np.array_equal(copy.path.route.z, stock.path.route.z)
+    assert (copy.name, copy.seed, copy.walks, copy.imu) == (stock.name, stock.seed, stock.walks, stock.imu)
+
+
+def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch):
+    shutil.copy(SHEETS / "nimu.toml", tmp_path / "my-imu.toml")
+    scenario = load_scenario(own(('imu = "nimu"', 'imu = "my-imu.toml"')))
+    monkeypatch.chdir("/")
+    assert load_spec(scenario.imu).gyro == load_spec("nimu").gyro
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("walks = 3", "wlaks = 3", r"unknown key 'seeds.wlaks' = 3"),
+        ("[gait]", "[gate]", r"key 'gait' is missing|unknown key 'gate'"),
+        ('description = "mine"', "", r"key 'description' is missing"),
+        ("pace_m_s = 1.2", "pace_m_s = 1.6", r"gait.pace_m_s = 1.6: .* less than or equal to 1.5"),
+        ("pace_m_s = 1.2", "pace_m_s = nan", r"gait.pace_m_s = nan: .* finite"),
+        ("pace_m_s = 1.2", 'pace_m_s = "1.2"', r"gait.pace_m_s = '1.2': .* valid number"),
+        ("length_m = 50 ", "length_m = -50 ", r"path.elements.0\S* = -50(.0)?: .* greater than 0"),
+        ("turn_deg = 90.0", "turn_deg = inf", r"path.elements.1\S*turn_deg = inf: .* finite"),
+        ("turn_deg = 90.0", "turn_deg = 90.0, radius_m = 1.5", r"path.elements.1.radius_m = 1.5: .* 2.5 m"),
+        ("length_m = 30.0", "length_m = 2.0", r"path.elements.2.length_m = 2: too short for its corners"),
+        ("turn_deg = 90.0", "turn_deg = 90.0, radius = 3", r"unknown key 'path.elements.1\S*radius' = 3"),
+        ("[gait]", "closed = true\n[gait]", r"path.closed = true: .* \(50.000, 30.000\) m, 58.310 m from"),
+        ('["taller",', '["giant",', r"subjects.0 = 'giant': expected one of reference, taller, shorter"),
+        ("mass_kg = 80.0", "mass_kg = 120.0", r"subject 'me': mass_kg = 120 is outside"),
+        ("mass_kg = 80.0", "age = 33", r"unknown key 'subjects.1\S*age' = 33"),
+        ('imu = "nimu"', 'imu = "nimo"', r"imu = '.*nimo': neither a stock IMU"),
+        ('imu = "nimu"', 'imu = "nimu"\nmount = "hat"', r"sensor.mount = 'hat': expected one of instep"),
+        ('imu = "nimu"', 'imu = "nimu"\nrate_hz = 300', r"rate = 300 Hz does not divide the physics rate"),
+        ("base = 40", "base = -1", r"seeds.base = -1: .* greater than or equal to 0"),
+        ("base = 40", "base = 1.5", r"seeds.base = 1.5: .* valid integer"),
+        ("walks = 3", "walks = 0", r"seeds.walks = 0: .* greater than or equal to 1"),
+        ("units = [7, 9]", "units = [7, -9]", r"seeds.units.1 = -9"),
+        ("units = [7, 9]", "units = []", r"seeds.units"),
+        ("[sensor]", "[sensor", r"not valid TOML"),
+        ("outdoors_degC = 21.0", "outdoors_degC = -400.0", r"temperature.outdoors_degC = -400.0"),
+    ],
+)
+def test_mistakes_are_refused_by_file_key_value_and_reason(own, old, new, message):
+    path = own((old, new))
+    with pytest.raises(InputError, match=message) as caught:
+        load_scenario(path)
+    assert str(caught.value).startswith(f"{path}: ")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_path_that_meets_itself_at_another_height_is_refused_with_its_file(own):
+    path = own(
+        (
+            '  { kind = "corner", turn_deg = 90.0 },\n',
+            '  { kind = "straight", length_m = 40.0, grade_percent = 3.0 },\n'
+            '  { kind = "straight", length_m = 20.0 },\n'
+            '  { kind = "arc", turn_deg = 270.0, radius_m = 20.0 },\n'
+            '  { kind = "straight", length_m = 40.0 },\n',
+        )
+    )
+    with pytest.raises(
+        InputError, match=re.escape(str(path)) + r": path.elements: .* comes within 3 m of itself"
+    ):
+        load_scenario(path)
+
+
+def test_a_name_that_is_nothing_is_refused_with_what_there_is():
+    with pytest.raises(
+        InputError, match=r"scenario 'loop': neither a stock scenario \(closed-loop, .*\) nor"
+    ):
+        load_scenario("loop")
