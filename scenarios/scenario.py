@@ -194,7 +194,10 @@ def _scenario(file: File, content: ScenarioFile) -> Scenario:
     gait, sensor, seeds = content.gait, content.sensor, content.seeds
     if sensor.mount not in MOUNTS:
         raise InputError(f"sensor.mount = {sensor.mount!r}: expected one of {', '.join(MOUNTS)}")
-    divisor(PHYSICS_STEP, sensor.rate_hz)
+    try:
+        divisor(PHYSICS_STEP, sensor.rate_hz)
+    except InputError as error:
+        raise InputError(f"sensor.rate_hz: {error}") from None
     imu = sensor.imu if sensor.imu in stock_specs() else str(file.parent / sensor.imu)
     load_spec(imu)
     return Scenario(

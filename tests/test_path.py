@@ -132,11 +132,12 @@ def test_a_full_circle_closes():
     assert [closure.gap_m, closure.heading_deg, closure.climb_m] == pytest.approx([0, 0, 0], abs=1e-12)
 
 
-def test_a_corner_at_the_end_of_a_closed_path_trims_the_first_straight():
+def test_a_corner_at_either_end_of_a_closed_path_trims_the_straight_at_the_other():
     square = [straight(50.0), corner(90)] * 4
-    path = build(*square, closed=True)
-    assert path.closure.gap_m < 1e-12
-    assert np.allclose(path.pieces.length[::2], 45)
+    for elements, straights in ((square, slice(0, None, 2)), (square[::-1], slice(1, None, 2))):
+        path = build(*elements, closed=True)
+        assert path.closure.gap_m < 1e-12
+        assert np.allclose(path.pieces.length[straights], 45)
     with pytest.raises(InputError, match=r"path.closed = true: the path ends at .* from its start"):
         build(*square[:-2], straight(49.0), corner(90), closed=True)
 

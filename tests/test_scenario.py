@@ -189,7 +189,11 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
         ("mass_kg = 80.0", "age = 33", r"unknown key 'subjects.1\S*age' = 33"),
         ('imu = "nimu"', 'imu = "nimo"', r"imu = '.*nimo': neither a stock IMU"),
         ('imu = "nimu"', 'imu = "nimu"\nmount = "hat"', r"sensor.mount = 'hat': expected one of instep"),
-        ('imu = "nimu"', 'imu = "nimu"\nrate_hz = 300', r"rate = 300 Hz does not divide the physics rate"),
+        (
+            'imu = "nimu"',
+            'imu = "nimu"\nrate_hz = 300',
+            r"sensor.rate_hz: rate = 300 Hz does not divide the physics rate",
+        ),
         ("base = 40", "base = -1", r"seeds.base = -1: .* greater than or equal to 0"),
         ("base = 40", "base = 1.5", r"seeds.base = 1.5: .* valid integer"),
         ("walks = 3", "walks = 0", r"seeds.walks = 0: .* greater than or equal to 1"),
