@@ -28,7 +28,7 @@ from footfall.simulate.walkers import (
     Walkers,
 )
 
-EPISODE_S = 10.0
+EPISODE_STEPS = 333  # 10 s
 
 
 @dataclass(frozen=True)
@@ -232,8 +232,9 @@ class WalkVectorEnv(gym.vector.VectorEnv):
         timestep: float = 0.003,
         threads: int = 0,
         seed: int = 0,
+        max_episode_steps: int = EPISODE_STEPS,
     ) -> None:
-        self.num_envs = num_envs
+        self.num_envs, self._limit = num_envs, max_episode_steps
         self.single_observation_space, self.single_action_space = _OBSERVATION_SPACE, _ACTION_SPACE
         self.observation_space = batch_space(_OBSERVATION_SPACE, num_envs)
         self.action_space = batch_space(_ACTION_SPACE, num_envs)
@@ -249,7 +250,7 @@ class WalkVectorEnv(gym.vector.VectorEnv):
             threads=threads,
             rng=np.random.default_rng(commands),
         )
-        self._age = np.zeros(num_envs)
+        self._age = np.zeros(num_envs, dtype=int)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -258,7 +259,7 @@ class WalkVectorEnv(gym.vector.VectorEnv):
         if seed is not None:
             self.task.seed(np.random.default_rng(seed))
         self.task.reset(np.ones(self.num_envs, dtype=bool))
-        self._age = self.task.rng.uniform(0, 0.8 * EPISODE_S, self.num_envs)
+        self._age = self.task.rng.integers(0, int(0.8 * self._limit), self.num_envs)
         return self.task.walkers.observe(), {}
 
     def step(
@@ -266,8 +267,8 @@ class WalkVectorEnv(gym.vector.VectorEnv):
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Walk for 30 ms; walkers that fell or ran out of time start anew."""
         reward, fallen, _ = self.task.step(np.asarray(actions, dtype=float))
-        self._age += CONTROL_INTERVAL
-        truncated = (self._age >= EPISODE_S) & ~fallen
+        self._age += 1
+        truncated = (self._age >= self._limit) & ~fallen
         ended = fallen | truncated
         info: dict[str, Any] = {"terms": self.task.terms}
         observation = self.task.walkers.observe()

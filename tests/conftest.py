@@ -12,3 +12,26 @@ def real_data() -> Path:
     if not folder.is_dir():
         pytest.skip("no real recordings beside this checkout")
     return folder
+
+
+@pytest.fixture(scope="session")
+def short_plan():  # type: ignore[no-untyped-def]
+    """A 40 m walk with one 90 degree corner, the stock walker with people's variability, 25 s of calibration."""
+    from footfall.scenarios.path import PathSpec, build_path
+    from footfall.simulate.journey import Plan
+
+    elements = [
+        {"kind": "straight", "length_m": 20.0},
+        {"kind": "corner", "turn_deg": 90.0, "radius_m": 2.5},
+        {"kind": "straight", "length_m": 20.0},
+    ]
+    path = build_path(PathSpec.model_validate({"elements": elements}))
+    return Plan(name="short", route=path.route, pace=1.3, calibration=26.0, wander=0.1, seed=5)
+
+
+@pytest.fixture(scope="session")
+def short_walk(short_plan):  # type: ignore[no-untyped-def]
+    """The walk of `short_plan`."""
+    from footfall.simulate.journey import walk
+
+    return walk(short_plan)

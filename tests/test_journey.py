@@ -1,0 +1,155 @@
+"""Walking a route: what the truth of a walk must be, and what must never come out."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from footfall.errors import InputError
+from footfall.models.body import MOUNTS, Ground
+from footfall.models.policy import Policy, stock_policy
+from footfall.pdr.strapdown import integrate
+from footfall.simulate.cache import cached_walk, plan_key
+from footfall.simulate.journey import FallError, Plan, walk
+from footfall.simulate.walk import Walk, footfalls_path, read_walk, write_walk
+
+
+def test_it_goes_where_the_route_goes(short_plan: Plan, short_walk: Walk) -> None:
+    route, line = short_plan.route, np.column_stack([short_plan.route.x, short_plan.route.y])
+    places = short_walk.footfalls.position[:, :2]
+    off = np.array([np.linalg.norm(line - place, axis=1).min() for place in places])
+    assert off.max() < 0.6
+    assert np.linalg.norm(places[0] - line[0]) < 2.0
+    assert np.linalg.norm(places[-1] - line[-1]) < 2.0
+    walked = np.hypot(*np.diff(places, axis=0).T).sum()
+    assert walked == pytest.approx(route.length, abs=2.5)
+
+
+def test_it_walks_at_a_human_gait(short_walk: Walk) -> None:
+    falls = short_walk.footfalls
+    stride_time = np.diff(falls.t)[1:]
+    assert 0.9 < np.median(stride_time) < 1.3
+    stride_length = np.hypot(*np.diff(falls.position[:, :2], axis=0).T)
+    speed = stride_length.sum() / (falls.t[-1] - falls.t[0])
+    assert 1.0 < speed < 1.5
+    after = short_walk.t > short_walk.calibration_s + 1
+    assert 0.2 < short_walk.stance[after].mean() < 0.5
+    swing = np.degrees(np.linalg.norm(short_walk.gyro[after], axis=1)).max()
+    assert 350 < swing < 900
+
+
+def test_the_start_is_motionless_and_as_long_as_asked(short_plan: Plan, short_walk: Walk) -> None:
+    still = short_walk.t < short_plan.calibration - 0.05
+    assert still.sum() > 25 * short_plan.rate_hz
+    np.testing.assert_allclose(short_walk.gyro[still], 0, atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(short_walk.accel[still], axis=1), 9.80665, atol=1e-9)
+    assert short_walk.footfalls.t[0] == pytest.approx(short_plan.calibration, abs=0.02)
+
+
+@pytest.mark.parametrize("rate", [1000.0, 200.0])
+def test_integrating_the_perfect_imu_returns_the_walk(short_plan: Plan, rate: float) -> None:
+    truth = walk(replace(short_plan, rate_hz=rate))
+    out = integrate(
+        truth.t,
+        truth.gyro,
+        truth.accel,
+        quaternion=truth.quaternion[0],
+        velocity=truth.velocity[0],
+        position=truth.position[0],
+    )
+    assert np.linalg.norm(out.position - truth.position, axis=1).max() < 1e-3
+
+
+def test_the_same_plan_gives_the_same_bytes(short_plan: Plan, short_walk: Walk) -> None:
+    again = walk(short_plan)
+    for name in ("t", "position", "quaternion", "gyro", "accel", "contact", "stance"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(short_walk, name))
+    other = walk(replace(short_plan, seed=6))
+    assert not np.array_equal(other.footfalls.position[5], short_walk.footfalls.position[5])
+
+
+def test_a_mount_turns_the_measurement_and_not_the_walk(short_plan: Plan, short_walk: Walk) -> None:
+    """Two IMUs on one foot: the turning rates differ by their constant relative attitude."""
+    medial = walk(replace(short_plan, mount=MOUNTS["medial"]))
+    n = min(len(medial.t), len(short_walk.t))
+    still = int(25 * short_plan.rate_hz)
+    relative = (
+        Rotation.from_quat(short_walk.quaternion[0], scalar_first=True).inv()
+        * Rotation.from_quat(medial.quaternion[0], scalar_first=True)
+    )
+    # The two walks may begin a sample or two apart: compare the sorted norms, then the attitude at the start.
+    assert np.degrees(relative.magnitude()) == pytest.approx(20.0, abs=2.0)
+    peak = np.percentile(np.linalg.norm(medial.gyro[still:n], axis=1), [50, 90, 99])
+    same = np.percentile(np.linalg.norm(short_walk.gyro[still:n], axis=1), [50, 90, 99])
+    np.testing.assert_allclose(peak, same, rtol=0.03)
+
+
+def test_it_climbs_what_the_ground_climbs(short_plan: Plan) -> None:
+    """On a 4 % grade the IMU gains the height of the ground and the feet stay on it."""
+    grade = 0.04
+    x = np.arange(-12.0, 40.0, 0.5)
+    ground = Ground(-12.0, -12.0, 0.5, np.tile(grade * x, (90, 1)).astype(np.float32))
+    climbing = walk(replace(short_plan, ground=ground))
+    falls = climbing.footfalls.position
+    np.testing.assert_allclose(falls[:, 2] - grade * falls[:, 0], falls[0, 2] - grade * falls[0, 0], atol=0.012)
+    assert falls[-1, 2] - falls[0, 2] > 0.6
+
+
+def test_a_fall_ends_the_walk_with_a_sentence(short_plan: Plan) -> None:
+    policy = stock_policy()
+    lame = Policy(policy.weights, policy.biases, np.zeros(32), "lame")
+    with pytest.raises(FallError, match=r"short: the walker fell at -?\d+ m \(\d+ s, seed 5, pace 1\.3 m/s\)"):
+        walk(short_plan, lame)
+
+
+def test_a_rate_that_does_not_divide_is_refused_before_walking(short_plan: Plan) -> None:
+    with pytest.raises(InputError, match="rate = 300 Hz"):
+        walk(replace(short_plan, rate_hz=300.0))
+
+
+def test_walks_survive_their_files(tmp_path, short_walk: Walk) -> None:  # type: ignore[no-untyped-def]
+    path = tmp_path / "walk.parquet"
+    write_walk(short_walk, path)
+    back = read_walk(path)
+    np.testing.assert_array_equal(back.quaternion, short_walk.quaternion)
+    np.testing.assert_array_equal(back.footfalls.heading, short_walk.footfalls.heading)
+    assert back.meta == short_walk.meta
+    footfalls_path(path).unlink()
+    with pytest.raises(InputError, match=r"walk\.footfalls\.parquet: no such file"):
+        read_walk(path)
+
+
+def test_walks_are_cached_by_content(tmp_path, monkeypatch, short_plan: Plan, short_walk: Walk) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr("footfall.simulate.cache.cache_folder", lambda: tmp_path)
+    calls = []
+    monkeypatch.setattr("footfall.simulate.cache.walk", lambda *_: calls.append(1) or short_walk)
+    cached_walk(short_plan)
+    found = cached_walk(short_plan)
+    assert len(calls) == 1
+    np.testing.assert_array_equal(found.gyro, short_walk.gyro)
+    cached_walk(replace(short_plan, pace=1.2))
+    assert len(calls) == 2
+    cached_walk(short_plan, use_cache=False)
+    assert len(calls) == 3
+    # A damaged file is walked again, not believed.
+    (tmp_path / f"{plan_key(short_plan, stock_policy())}.parquet").write_bytes(b"PAR1 torn")
+    cached_walk(short_plan)
+    assert len(calls) == 4
+    assert not list(tmp_path.glob(".*tmp"))
+
+
+def test_the_key_knows_everything_that_matters(short_plan: Plan) -> None:
+    policy = stock_policy()
+    keys = {
+        plan_key(plan, policy)
+        for plan in (
+            short_plan,
+            replace(short_plan, seed=6),
+            replace(short_plan, rate_hz=100.0),
+            replace(short_plan, mount=MOUNTS["heel"]),
+            replace(short_plan, wander=0.11),
+            replace(short_plan, route=replace(short_plan.route, x=short_plan.route.x + 1e-9)),
+        )
+    }
+    assert len(keys) == 6

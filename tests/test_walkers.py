@@ -1,0 +1,186 @@
+"""The walker: mirror symmetry, no external force, falls and steering."""
+
+import mujoco
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from footfall.models.body import N_SERVOS, SENSOR_TOUCH, build_body
+from footfall.models.policy import load_policy, stock_policy
+from footfall.models.subject import Subject
+from footfall.simulate.feedback import GAIN_START, Balance, Gains, feedback, mirror_where
+from footfall.simulate.variability import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD, Variability
+from footfall.simulate.walkers import GRAVITY, N_ACTION, N_OBSERVATION, Walkers
+
+BALANCE_FIELDS = tuple(Balance.__dataclass_fields__)
+
+
+def walkers(n: int = 1, timestep: float = 0.001, variability: float = 0.0) -> Walkers:
+    model = build_body(Subject(), timestep=timestep)
+    group = Walkers(
+        [model] * n,
+        [Subject()] * n,
+        stock_policy().feedback_gains,
+        variability=np.full(n, variability),
+        rng=np.random.default_rng(0),
+    )
+    group.place(
+        np.ones(n, dtype=bool),
+        phase=np.full(n, 0.25),
+        speed=np.full(n, 1.25),
+        heading=np.zeros(n),
+        position=np.zeros((n, 3)),
+    )
+    return group
+
+
+def test_nothing_but_gravity_contact_and_joint_torques_acts() -> None:
+    """At every physics step: no applied force, no constraint but contacts and joint stops, and momentum agrees.
+
+    The change of the whole body's momentum must be what gravity and the ground's contact forces give.
+    """
+    group, policy = walkers(), stock_policy()
+    model, data = group.models[0], mujoco.MjData(group.models[0])
+    assert model.neq == 0
+    assert model.nmocap == 0
+    assert model.ntendon == 0
+    assert (model.body_gravcomp == 0).all()
+    mass = sum(model.body_mass)
+    force = np.zeros(6)
+    for _ in range(40):
+        data.qpos[:], data.qvel[:] = group.qpos[0], group.qvel[0]
+        trace = group.step(policy(group.observe()))
+        for k in range(group.substeps):
+            data.ctrl[:] = trace.target[0, k]
+            mujoco.mj_forward(model, data)
+            mujoco.mj_subtreeVel(model, data)
+            before = data.subtree_linvel[0] * mass
+            ground = np.zeros(3)
+            for i, contact in enumerate(data.contact[: data.ncon]):
+                mujoco.mj_contactForce(model, data, i, force)
+                sign = 1.0 if model.geom(contact.geom1).name == "ground" else -1.0
+                ground += sign * contact.frame.reshape(3, 3).T @ force[:3]
+            mujoco.mj_step(model, data)
+            assert not data.qfrc_applied.any()
+            assert not data.xfrc_applied.any()
+            mujoco.mj_forward(model, data)
+            mujoco.mj_subtreeVel(model, data)
+            change = data.subtree_linvel[0] * mass - before
+            expected = (ground + [0, 0, -mass * 9.81]) * model.opt.timestep
+            assert np.linalg.norm(change - expected) < 0.02
+        np.testing.assert_allclose(data.qpos, trace.qpos[0, -1], atol=1e-9)
+
+
+def test_the_policy_walks() -> None:
+    """Twenty seconds of people's variability at 1.25 m/s, in a straight line, without falling."""
+    group, policy = walkers(4, variability=1.0), stock_policy()
+    for _ in range(667):
+        group.step(policy(group.observe()))
+        assert not group.fallen().any()
+    distance = group.qpos[:, 0]
+    assert (distance > 0.8 * 1.25 * 20).all()
+    assert (distance < 1.2 * 1.25 * 20).all()
+
+
+def test_without_a_policy_it_falls_and_says_so() -> None:
+    group = walkers()
+    group.gains = np.zeros(32)
+    for _ in range(200):
+        group.step(np.zeros((1, N_ACTION)))
+        if group.fallen()[0]:
+            return
+    pytest.fail("a body without control stood for 6 s")
+
+
+def test_mirrored_walkers_see_and_do_the_same() -> None:
+    """A walker in left stance that mirrors one in right stance has the same observation and stays its mirror."""
+    group = walkers(2)
+    group.place(
+        np.ones(2, dtype=bool),
+        phase=np.array([0.2, 0.7]),
+        speed=np.full(2, 1.2),
+        heading=np.zeros(2),
+        position=np.zeros((2, 3)),
+    )
+    group.turn[:] = group.turn_goal[:] = [0.3, -0.3]
+    policy = stock_policy()
+    for _ in range(20):
+        seen = group.observe()
+        np.testing.assert_allclose(seen[0], seen[1], atol=2e-3)
+        group.step(policy(seen))
+    np.testing.assert_allclose(group.qpos[0, [0, 2]], group.qpos[1, [0, 2]], atol=2e-3)
+    np.testing.assert_allclose(group.qpos[0, 1], -group.qpos[1, 1], atol=2e-3)
+
+
+def test_a_walker_does_not_depend_on_its_neighbours() -> None:
+    one, three, policy = walkers(1), walkers(3), stock_policy()
+    for _ in range(30):
+        one.step(policy(one.observe()))
+        three.step(policy(three.observe()))
+    np.testing.assert_allclose(one.qpos[0], three.qpos[1], atol=1e-9)
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.lists(st.floats(-1, 1), min_size=N_SERVOS, max_size=N_SERVOS), st.booleans())
+def test_mirroring_twice_is_nothing(values: list[float], left: bool) -> None:
+    row = np.array([values])
+    twice = mirror_where(np.array([left]), mirror_where(np.array([left]), row))
+    np.testing.assert_array_equal(twice, row)
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.lists(st.floats(-1, 1), min_size=len(BALANCE_FIELDS), max_size=len(BALANCE_FIELDS)))
+def test_feedback_is_linear_in_its_gains(values: list[float]) -> None:
+    balance = Balance(*(np.array([value]) for value in values))
+    first, second = np.array(GAIN_START), np.linspace(-1, 1, len(Gains._fields))
+    both = feedback(first + second, balance)
+    np.testing.assert_allclose(both, feedback(first, balance) + feedback(second, balance), atol=1e-12)
+
+
+def test_variability_has_the_stated_spread() -> None:
+    """Targets drawn over many steps scatter as people's do; level 0 is a metronome."""
+    n = 4000
+    lively = Variability(np.ones(n))
+    still = Variability(np.zeros(n))
+    rng = np.random.default_rng(1)
+    for half in np.arange(40) % 2:
+        for group in (lively, still):
+            group.advance(np.ones(n, dtype=bool), np.full(n, half), 0.03, rng)
+    assert lively.target[:, 0].std() == pytest.approx(np.hypot(CADENCE_SD, CADENCE_SLOW_SD), rel=0.05)
+    assert lively.target[:, 3].std() == pytest.approx(TOE_OUT_SD, rel=0.05)
+    assert not still.value.any()
+
+
+def test_touch_sensors_carry_the_body() -> None:
+    """Averaged over strides, the ground carries the weight."""
+    group, policy = walkers(), stock_policy()
+    load = []
+    for _ in range(600):
+        trace = group.step(policy(group.observe()))
+        load.append(trace.sensor[0, :, SENSOR_TOUCH].sum(axis=-1).mean())
+    weight = sum(group.models[0].body_mass) * GRAVITY
+    assert np.mean(load[200:]) == pytest.approx(weight, rel=0.03)
+
+
+def test_a_control_step_that_is_no_multiple_of_the_physics_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"no multiple of the physics step 0.007"):
+        walkers(timestep=0.007)
+
+
+def test_the_shipped_policy_fits_the_walker() -> None:
+    policy = stock_policy()
+    assert policy(np.zeros((3, N_OBSERVATION))).shape == (3, N_ACTION)
+    assert policy.feedback_gains.shape == (32,)
+    assert {"seed", "samples"} <= set(policy.meta)
+
+
+def test_a_file_that_is_no_policy_is_refused(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    from footfall.errors import InputError
+
+    bad = tmp_path / "weights.npz"
+    np.savez(bad, nothing=np.zeros(3))
+    with pytest.raises(InputError, match="not a walker policy"):
+        load_policy(bad)
+    with pytest.raises(InputError, match=r"absent\.npz"):
+        load_policy(tmp_path / "absent.npz")
