@@ -53,13 +53,11 @@ class StanceParams:
     ----------
     min_stance_s : s, shorter moments of rest are none
     min_stride_s : s, two stances closer than this are one (the quieter counts)
-    quiet_s : s, window over which the quietest instant of a stance is judged
     reset_s : s, a stance longer than two of these is a still period with zero velocity this often
     """
 
     min_stance_s: float = 0.100
     min_stride_s: float = 0.4
-    quiet_s: float = 0.050
     reset_s: float = 0.3
 
 
@@ -105,14 +103,13 @@ def find_stances(t: np.ndarray, score: np.ndarray, params: StanceParams | None =
     grow with the cube of the time between them.
     """
     params = params or StanceParams()
-    quiet = moving_mean(score, t, params.quiet_s)
     kept: list[np.ndarray] = []
     for start, stop in _runs(score < 1.0):
         if t[stop] - t[start] < params.min_stance_s:
             continue
-        resets = _resets(t, quiet, start, stop, params.reset_s)
+        resets = _resets(t, score, start, stop, params.reset_s)
         if kept and t[resets[0]] - t[kept[-1][-1]] < params.min_stride_s:
-            if quiet[resets].min() >= quiet[kept[-1]].min():
+            if score[resets].min() >= score[kept[-1]].min():
                 continue
             kept.pop()
         kept.append(resets)
@@ -128,11 +125,11 @@ def _runs(flags: np.ndarray) -> np.ndarray:
     return edges.reshape(-1, 2) - [0, 1]
 
 
-def _resets(t: np.ndarray, quiet: np.ndarray, start: int, stop: int, reset_s: float) -> np.ndarray:
+def _resets(t: np.ndarray, score: np.ndarray, start: int, stop: int, reset_s: float) -> np.ndarray:
     """The quietest instant of a stance, or of each part of a still period."""
     duration = t[stop] - t[start]
     parts = int(duration / reset_s) if duration > 2 * reset_s else 1
     edges = np.searchsorted(t[start : stop + 1], t[start] + np.arange(1, parts) * (duration / parts)) + start
     bounds = np.concatenate([[start], edges, [stop + 1]])
     # A gap in the samples may leave a part empty.
-    return np.array([a + np.argmin(quiet[a:b]) for a, b in pairwise(bounds) if b > a])
+    return np.array([a + np.argmin(score[a:b]) for a, b in pairwise(bounds) if b > a])

@@ -3,7 +3,8 @@
 import subprocess
 import sys
 
-# The physics, the learner and the pictures, and the rooms that hold the truth.
+# The physics, the learner and the pictures, and the rooms that hold the truth. (The package itself loads
+# gymnasium, to register its environment.)
 STRANGERS = (
     "mujoco",
     "gymnasium",

@@ -80,7 +80,7 @@ def test_a_moment_of_rest_in_swing_is_no_stance():
 
 
 def test_of_two_rests_too_close_the_quieter_counts():
-    t, score = score_of((1.0, 1.2, 0.5), (1.25, 1.5, 0.1), (2.4, 2.7, 0.3), (2.8, 2.95, 0.6))
+    t, score = score_of((1.0, 1.2, 0.5), (1.25, 1.5, 0.1), (2.4, 2.7, 0.3), (2.72, 2.9, 0.6))
     found = find_stances(t, score)
     assert len(found.footfalls) == 2
     first, second = t[found.resets[found.footfalls]]
