@@ -7,7 +7,6 @@ import sys
 # gymnasium, to register its environment.)
 STRANGERS = (
     "mujoco",
-    "gymnasium",
     "torch",
     "matplotlib",
     "footfall.models",
