@@ -218,9 +218,8 @@ def _stances_after(recording: Recording, rest: Rest, params: PdrParams) -> Stanc
     later = resets > rest.last
     skipped = int(np.count_nonzero(~later))
     resets = np.concatenate([[rest.last], resets[later]])
-    footfalls = np.maximum(
-        footfalls - skipped + 1, 0
-    )  # 0 where the foot left straight from the averaged part
+    # Not below 0: the foot may leave straight from the averaged part.
+    footfalls = np.maximum(footfalls - skipped + 1, 0)
     if len(footfalls) < 2:
         raise InputError(f"recording: no stride found after the {params.bias_s:g} s at rest")
     return Stances(resets=resets, footfalls=footfalls)
