@@ -18,15 +18,15 @@ from footfall.pdr.pdr import PdrParams, StartPose, dead_reckon
 from footfall.pdr.track import Track
 from footfall.recording import Recording
 
-HDR_UNITS = MappingProxyType(
-    {
-        "raw_rate": "rad/s",
-        "rate_once": "rad/s",
-        "rate_twice": "rad/s",
-        "attenuator": "",
-        "integrator": "rad/s",
-    }
-)
+# A plain dict: tracks travel between processes, and a mapping proxy cannot be pickled.
+HDR_UNITS: Mapping[str, str] = {
+    "raw_rate": "rad/s",
+    "rate_once": "rad/s",
+    "rate_twice": "rad/s",
+    "attenuator": "",
+    "integrator": "rad/s",
+}
+
 
 
 @dataclass(frozen=True)
