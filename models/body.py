@@ -1,4 +1,4 @@
-"""The walker's body, built with MjSpec: 23 degrees of freedom, 15 torque-limited joint servos.
+"""The walker's body of 1.75 m, built with MjSpec: 23 degrees of freedom, 15 torque-limited joint servos.
 
 Segment lengths and masses follow Winter, Biomechanics and Motor Control of Human Movement, table 4.1
 (thigh 0.245 H, shank 0.246 H; thigh 0.100 M, shank 0.0465 M, foot with shoe 0.017 M). The pelvis carries
@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 
 from footfall.errors import InputError
-from footfall.models.subject import Subject
+from footfall.models.subject import REFERENCE_HEIGHT_M, Build
 
 # Joint names, in the order of qpos after the free joint. Right leg first: it carries the IMU by default.
 LEG_JOINTS = ("hip_flexion", "hip_adduction", "hip_rotation", "knee", "ankle", "subtalar", "toe")
@@ -70,8 +70,10 @@ _LUMBAR_AXES = {
     "lumbar_yaw": ((0, 0, 1), (-35, 35), 2.0, 0.01, 0.0),
 }
 
+GRAVITY = 9.80665  # m/s2
 ANKLE_HEIGHT = 0.075  # m above the ground, sole included, reference body
 HIP_HALF_WIDTH = 0.088
+HIP_HEIGHT = 0.95  # of the pelvis in standing
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,7 @@ class Mount:
     Attributes
     ----------
     foot : "right" or "left"
-    position : (3,) m from the ankle, x forward, y left, z up, reference body (scaled with stature)
+    position : (3,) m from the ankle, x forward, y left, z up, of the 1.75 m body (scaled with stature)
     euler_deg : (3,) roll, pitch, yaw of the IMU in the foot (z-y-x); positive pitch is nose down
     """
 
@@ -116,7 +118,7 @@ class Ground:
 
 
 def build_body(
-    subject: Subject,
+    build: Build,
     *,
     timestep: float,
     mount: Mount | None = None,
@@ -135,6 +137,7 @@ def build_body(
     spec.compiler.degree = False
     option = spec.option
     option.timestep = timestep
+    option.gravity = [0, 0, -GRAVITY]
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     option.solver = mujoco.mjtSolver.mjSOL_NEWTON
     option.cone = mujoco.mjtCone.mjCONE_PYRAMIDAL
@@ -145,28 +148,25 @@ def build_body(
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_EULERDAMP | mujoco.mjtDisableBit.mjDSBL_ISLAND)
     spec.visual.headlight.ambient = [0.35, 0.35, 0.35]
 
-    _add_ground(spec, subject, ground)
-    s, m = subject.scale, subject.mass_ratio
-    pelvis = spec.worldbody.add_body(name="pelvis", pos=[0, 0, s])
+    _add_ground(spec, build, ground)
+    pelvis = spec.worldbody.add_body(name="pelvis", pos=[0, 0, 1])
     pelvis.add_freejoint(name="root")
-    _inertial(pelvis, [0, 0, 0.02 * s], 10.65 * m, np.array([0.08, 0.07, 0.09]) * m * s**2)
-    _look(pelvis, [0, -0.08 * s, 0], [0, 0.08 * s, 0], 0.09 * s, _TROUSERS)
+    _inertial(pelvis, [0, 0, 0.02], 10.65, np.array([0.08, 0.07, 0.09]) * build.trunk_mass, build.trunk_mass)
+    _look(pelvis, [0, -0.08, 0], [0, 0.08, 0], 0.09, _TROUSERS)
     for side in "rl":
-        _add_leg(pelvis, side, subject)
-    torso = pelvis.add_body(name="torso", pos=[0, 0, 0.10 * s])
-    _inertial(torso, [0, 0, 0.24 * s], 40.2 * m, np.array([2.2, 2.0, 1.0]) * m * s**2)
-    for name, (axis, limits, damping, armature, stiffness) in _LUMBAR_AXES.items():
-        _joint(torso, name, axis, limits, damping * m, armature * m, stiffness)
-    _add_torso_looks(torso, s)
+        _add_leg(pelvis, side, build)
+    torso = pelvis.add_body(name="torso", pos=[0, 0, 0.10])
+    _inertial(torso, [0, 0, 0.24], 40.2, np.array([2.2, 2.0, 1.0]) * build.trunk_mass, build.trunk_mass)
+    for name, axis in _LUMBAR_AXES.items():
+        _joint(torso, name, *axis)
+    _add_torso_looks(torso)
 
     for name, servo in SERVOS.items():
         actuator = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
-        # Strength in proportion to weight times length: a heavier person is as able as a lighter one.
-        strength = m * s
-        actuator.set_to_position(kp=servo.kp * strength, kv=servo.kv * strength)
+        actuator.set_to_position(kp=servo.kp, kv=servo.kv)
         actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
-        actuator.forcerange = [servo.low * strength, servo.high * strength]
-    _add_sensors(spec, subject, mount)
+        actuator.forcerange = [servo.low, servo.high]
+    _add_sensors(spec, mount)
     return spec.compile()
 
 
@@ -176,9 +176,11 @@ _SKIN = (0.85, 0.68, 0.56, 1.0)
 _SHOE = (0.92, 0.92, 0.95, 1.0)
 
 
-def _inertial(body: mujoco.MjsBody, position: list[float], mass: float, inertia: np.ndarray) -> None:
+def _inertial(
+    body: mujoco.MjsBody, position: list[float], mass: float, inertia: np.ndarray, mass_factor: float = 1.0
+) -> None:
     body.explicitinertial = True
-    body.ipos, body.mass, body.inertia = position, mass, list(inertia)
+    body.ipos, body.mass, body.inertia = position, mass * mass_factor, list(inertia)
 
 
 def _joint(
@@ -211,20 +213,20 @@ def _look(body: mujoco.MjsBody, start: list[float], end: list[float], radius: fl
     )
 
 
-def _contact(subject: Subject) -> dict:
+def _contact(build: Build) -> dict:
     return {
         "condim": 3,
-        "friction": [subject.friction, 0.005, 0.0001],
-        "solref": [subject.sole_time_s, 1.0],
+        "friction": [build.friction, 0.005, 0.0001],
+        "solref": [build.sole_time, 1.0],
         "solimp": [0.85, 0.95, 0.008, 0.5, 2.0],
     }
 
 
-def _add_ground(spec: mujoco.MjSpec, subject: Subject, ground: Ground | None) -> None:
+def _add_ground(spec: mujoco.MjSpec, build: Build, ground: Ground | None) -> None:
     world = spec.worldbody
     world.add_light(pos=[0, 0, 30], dir=[0.2, 0.3, -1], type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL)
     common = {"name": "ground", "contype": 1, "conaffinity": 0, "rgba": [0.72, 0.74, 0.72, 1]}
-    common |= _contact(subject)
+    common |= _contact(build)
     if ground is None:
         world.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], **common)
         return
@@ -247,82 +249,73 @@ def _add_ground(spec: mujoco.MjSpec, subject: Subject, ground: Ground | None) ->
     )
 
 
-def _add_leg(pelvis: mujoco.MjsBody, side: str, subject: Subject) -> None:
-    s, m = subject.scale, subject.mass_ratio
+def _add_leg(pelvis: mujoco.MjsBody, side: str, build: Build) -> None:
     sign = -1 if side == "r" else 1  # of y
-    thigh_length, shank_length = 0.245 * subject.height_m, 0.246 * subject.height_m
-    inertia_scale = m * s**2
+    thigh_length = 0.245 * REFERENCE_HEIGHT_M * build.thigh
+    shank_length = 0.246 * REFERENCE_HEIGHT_M * build.shank
 
     def joints(body: mujoco.MjsBody, *names: str) -> None:
         for name in names:
-            axis, limits, damping, armature, stiffness = _LEG_AXES[name]
+            axis, *rest = _LEG_AXES[name]
             mirrored = axis if side == "r" else (-axis[0], axis[1], -axis[2])
-            _joint(body, f"{name}_{side}", mirrored, limits, damping * m, armature * m, stiffness * m * s)
+            _joint(body, f"{name}_{side}", mirrored, *rest)
 
-    thigh = pelvis.add_body(name=f"thigh_{side}", pos=[0, sign * HIP_HALF_WIDTH * s, -0.06 * s])
-    _inertial(thigh, [0, 0, -0.433 * thigh_length], 7.5 * m, np.array([0.144, 0.144, 0.03]) * inertia_scale)
+    thigh = pelvis.add_body(name=f"thigh_{side}", pos=[0, sign * HIP_HALF_WIDTH * build.hip_width, -0.06])
+    inertia = np.array([0.144, 0.144, 0.03]) * build.leg_mass
+    _inertial(thigh, [0, 0, -0.433 * thigh_length], 7.5, inertia, build.leg_mass)
     joints(thigh, "hip_flexion", "hip_adduction", "hip_rotation")
-    _look(thigh, [0, 0, 0], [0, 0, -thigh_length], 0.065 * s, _TROUSERS)
+    _look(thigh, [0, 0, 0], [0, 0, -thigh_length], 0.065, _TROUSERS)
 
     shank = thigh.add_body(name=f"shank_{side}", pos=[0, 0, -thigh_length])
-    _inertial(shank, [0, 0, -0.433 * shank_length], 3.49 * m, np.array([0.059, 0.059, 0.006]) * inertia_scale)
+    inertia = np.array([0.059, 0.059, 0.006]) * build.leg_mass
+    _inertial(shank, [0, 0, -0.433 * shank_length], 3.49, inertia, build.leg_mass)
     joints(shank, "knee")
-    _look(shank, [0, 0, 0], [0, 0, -shank_length + 0.03 * s], 0.048 * s, _TROUSERS)
+    _look(shank, [0, 0, 0], [0, 0, -shank_length + 0.03], 0.048, _TROUSERS)
 
     foot = shank.add_body(name=f"foot_{side}", pos=[0, 0, -shank_length])
-    _inertial(foot, [0.05 * s, 0, -0.04 * s], 1.15 * m, np.array([0.0012, 0.005, 0.005]) * inertia_scale)
+    _inertial(foot, [0.05, 0, -0.04], 1.15, np.array([0.0012, 0.005, 0.005]))
     joints(foot, "ankle", "subtalar")
-    sole = -ANKLE_HEIGHT * s
-    touch = {"contype": 0, "conaffinity": 1, "mass": 0, "rgba": _SHOE, "group": 1} | _contact(subject)
+    touch = {"contype": 0, "conaffinity": 1, "mass": 0, "rgba": _SHOE, "group": 1} | _contact(build)
     sphere, capsule = mujoco.mjtGeom.mjGEOM_SPHERE, mujoco.mjtGeom.mjGEOM_CAPSULE
-    # Capsule ends and spheres share the sole's plane.
-    foot.add_geom(
-        name=f"heel_{side}", type=sphere, pos=[-0.04 * s, 0, sole + 0.03 * s], size=[0.03 * s, 0, 0], **touch
-    )
-    ball_z = sole + 0.018 * s
+    # Heel, ball and toe share the sole's plane.
+    sole, length = -ANKLE_HEIGHT, build.foot
+    heel = [-0.04 * length, 0, sole + 0.03]
+    foot.add_geom(name=f"heel_{side}", type=sphere, pos=heel, size=[0.03, 0, 0], **touch)
+    ball_x, ball_z = 0.125 * length, sole + 0.018
     foot.add_geom(
         name=f"ball_{side}",
         type=capsule,
-        fromto=[0.125 * s, -0.035 * s, ball_z, 0.125 * s, 0.035 * s, ball_z],
-        size=[0.018 * s, 0, 0],
+        fromto=[ball_x, -0.035, ball_z, ball_x, 0.035, ball_z],
+        size=[0.018, 0, 0],
         **touch,
     )
-    _look(foot, [-0.03 * s, 0, -0.04 * s], [0.11 * s, 0, -0.05 * s], 0.034 * s, _SHOE)
-    toe = foot.add_body(name=f"toe_{side}", pos=[0.135 * s, 0, ball_z])
-    _inertial(toe, [0.03 * s, 0, 0], 0.15 * m, np.full(3, 1e-4) * inertia_scale)
+    _look(foot, [-0.03 * length, 0, -0.04], [0.11 * length, 0, -0.05], 0.034, _SHOE)
+    toe = foot.add_body(name=f"toe_{side}", pos=[0.135 * length, 0, ball_z])
+    _inertial(toe, [0.03, 0, 0], 0.15, np.full(3, 1e-4))
     joints(toe, "toe")
-    toe.add_geom(name=f"toe_{side}", type=sphere, pos=[0.05 * s, 0, 0], size=[0.0178 * s, 0, 0], **touch)
-    _look(toe, [0.0, -0.018 * s, 0.004 * s], [0.045 * s, -0.004 * s, 0.002 * s], 0.02 * s, _SHOE)
-    _look(toe, [0.0, 0.018 * s, 0.004 * s], [0.045 * s, 0.004 * s, 0.002 * s], 0.02 * s, _SHOE)
+    toe.add_geom(name=f"toe_{side}", type=sphere, pos=[0.05, 0, 0], size=[0.0178, 0, 0], **touch)
+    for y in (-0.018, 0.018):
+        _look(toe, [0.0, y, 0.004], [0.045, y / 4.5, 0.002], 0.02, _SHOE)
 
     # Boxes round each contact, for the touch sensors.
     box = mujoco.mjtGeom.mjGEOM_BOX
     foot.add_site(
-        name=f"heel_{side}",
-        type=box,
-        pos=[-0.045 * s, 0, sole + 0.02 * s],
-        size=np.array([0.04, 0.06, 0.04]) * s,
+        name=f"heel_{side}", type=box, pos=[-0.045 * length, 0, sole + 0.02], size=[0.04, 0.06, 0.04]
     )
-    foot.add_site(
-        name=f"ball_{side}",
-        type=box,
-        pos=[0.125 * s, 0, sole + 0.02 * s],
-        size=np.array([0.03, 0.07, 0.04]) * s,
-    )
-    toe.add_site(name=f"toe_{side}", type=box, pos=[0.055 * s, 0, 0], size=np.array([0.04, 0.06, 0.04]) * s)
+    foot.add_site(name=f"ball_{side}", type=box, pos=[ball_x, 0, sole + 0.02], size=[0.03, 0.07, 0.04])
+    toe.add_site(name=f"toe_{side}", type=box, pos=[0.055, 0, 0], size=[0.04, 0.06, 0.04])
 
 
-def _add_torso_looks(torso: mujoco.MjsBody, s: float) -> None:
+def _add_torso_looks(torso: mujoco.MjsBody) -> None:
     """Trunk, head and hanging arms; their mass is in the torso's inertia."""
     for y in (-0.07, 0.07):
-        _look(torso, [0, y * s, 0.02 * s], [0, 1.3 * y * s, 0.36 * s], 0.10 * s, _SHIRT)
-    _look(torso, [0, 0, 0.42 * s], [0, 0, 0.5 * s], 0.05 * s, _SKIN)
-    _look(torso, [0.01 * s, 0, 0.585 * s], [0.01 * s, 0, 0.62 * s], 0.095 * s, _SKIN)
+        _look(torso, [0, y, 0.02], [0, 1.3 * y, 0.36], 0.10, _SHIRT)
+    _look(torso, [0, 0, 0.42], [0, 0, 0.5], 0.05, _SKIN)
+    _look(torso, [0.01, 0, 0.585], [0.01, 0, 0.62], 0.095, _SKIN)
     for y in (-1, 1):
-        shoulder, elbow = [0, 0.21 * y * s, 0.40 * s], [-0.02 * s, 0.25 * y * s, 0.10 * s]
-        hand = [0.06 * s, 0.25 * y * s, -0.14 * s]
-        _look(torso, shoulder, elbow, 0.045 * s, _SHIRT)
-        _look(torso, elbow, hand, 0.036 * s, _SKIN)
+        shoulder, elbow, hand = [0, 0.21 * y, 0.40], [-0.02, 0.25 * y, 0.10], [0.06, 0.25 * y, -0.14]
+        _look(torso, shoulder, elbow, 0.045, _SHIRT)
+        _look(torso, elbow, hand, 0.036, _SKIN)
 
 
 # Sensor layout: what control and scoring read, in this order.
@@ -334,7 +327,7 @@ SENSOR_IMU_POSITION = slice(24, 27)
 SENSOR_IMU_QUATERNION = slice(27, 31)
 
 
-def _add_sensors(spec: mujoco.MjSpec, subject: Subject, mount: Mount | None) -> None:
+def _add_sensors(spec: mujoco.MjSpec, mount: Mount | None) -> None:
     body, site, kind = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_SITE, mujoco.mjtSensor
     for quantity in (kind.mjSENS_FRAMEPOS, kind.mjSENS_FRAMELINVEL, kind.mjSENS_FRAMEANGVEL):
         for side in "rl":
@@ -348,7 +341,7 @@ def _add_sensors(spec: mujoco.MjSpec, subject: Subject, mount: Mount | None) -> 
     mujoco.mju_euler2Quat(quaternion, np.radians(mount.euler_deg[::-1]), "zyx")
     spec.body(f"foot_{mount.foot[0]}").add_site(
         name="imu",
-        pos=np.array(mount.position) * subject.scale,
+        pos=list(mount.position),
         quat=quaternion,
         type=mujoco.mjtGeom.mjGEOM_BOX,
         size=[0.022, 0.012, 0.007],  # the nIMU's 45 x 23 x 13 mm

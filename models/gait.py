@@ -73,29 +73,47 @@ def _table() -> np.ndarray:
 
 TABLE = _table()  # (N_PHASE, N_SERVOS) rad, at 1.25 m/s
 _HIP_MASK = mask("hip_flexion")
+_KNEE_ANKLE_MASK = mask("knee", "ankle")
+
+
+def _pose(**angles: float) -> np.ndarray:
+    out = np.zeros(N_SERVOS)
+    for name, angle in angles.items():
+        out[INDEX[name]] = angle
+    return out
+
+
+# Standing with slightly bent knees and level feet (hip - knee + ankle = 0), rad.
+STANDING = 0.06 * mask("hip_flexion") + 0.10 * mask("knee") + 0.04 * mask("ankle")
+# Feet one before the other, or apart, with level soles.
+STAGGER = _pose(hip_flexion_r=1, ankle_r=-1, hip_flexion_l=-1, ankle_l=1)
+SPREAD = mask("hip_adduction") - mask("subtalar")
 
 
 def stride_frequency(speed: np.ndarray) -> np.ndarray:
-    """Strides a second at `speed` (m/s) of the reference body."""
-    return 0.92 * (np.maximum(speed, 0.5) / 1.25) ** 0.45
+    """Strides a second at `speed` (m/s) of the 1.75 m body; slower than 0.7 m/s the steps get short instead."""
+    return 0.92 * (np.maximum(speed, 0.7) / 1.25) ** 0.45
 
 
 def hip_amplitude(speed: np.ndarray) -> np.ndarray:
     """Hip excursion relative to that at 1.25 m/s."""
-    return (np.maximum(speed, 0.5) / 1.25) ** 0.55
+    return (np.maximum(speed, 0.03) / 1.25) ** 0.55
 
 
-def reference_angles(phase: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+def reference_angles(phase: np.ndarray, speed: np.ndarray, amplitude: np.ndarray | float = 1.0) -> np.ndarray:
     """Servo angles of the reference gait.
 
     Parameters
     ----------
     phase : (...) stride phase in [0, 1), 0 at the right heel strike
-    amplitude : (...) hip excursion relative to 1.25 m/s
+    speed : (...) m/s, scales the hip's excursion and, when slow, that of knee and ankle
+    amplitude : (...) further factor on the hip's excursion
 
     Returns
     -------
     (..., 15) rad
     """
     angles = TABLE[(phase * N_PHASE).astype(np.intp) % N_PHASE]
-    return angles * (1 + _HIP_MASK * (amplitude[..., None] - 1))
+    hip = hip_amplitude(speed) * amplitude
+    low = np.clip(0.4 + 0.6 * speed / 0.9, 0.4, 1.0)  # no high knees when stepping on the spot
+    return angles * (1 + _HIP_MASK * (hip[..., None] - 1) + _KNEE_ANKLE_MASK * (low[..., None] - 1))

@@ -14,19 +14,12 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from footfall.models.body import Mount, build_body
-from footfall.models.subject import REFERENCE_HEIGHT_M, REFERENCE_MASS_KG, Subject
+from footfall.models.body import GRAVITY, build_body
+from footfall.models.subject import Build, Habits
 from footfall.simulate.feedback import GAIN_START
+from footfall.simulate.observation import LIMIT, N_OBSERVATION
 from footfall.simulate.reward import reward_terms, total
-from footfall.simulate.walkers import (
-    CONTROL_INTERVAL,
-    GRAVITY,
-    N_ACTION,
-    N_OBSERVATION,
-    OBSERVATION_LIMIT,
-    Trace,
-    Walkers,
-)
+from footfall.simulate.walkers import N_ACTION, Trace, Walkers
 
 EPISODE_STEPS = 333  # 10 s
 
@@ -38,26 +31,46 @@ class Difficulty:
     Attributes
     ----------
     speed : (low, high) m/s; turn : rad/s; grade : rise over run
+    stop : share of commands that ask to stand; stand : share of episodes that begin standing
     kick : SD (m/s) of the velocity kicks at each change of command (training only)
-    variability : of the gait, 1 = that of people
+    variability : of the gait, up to this many times that of people
     """
 
     level: float = 1.0
-    speed: tuple[float, float] = (0.85, 1.55)
-    turn: float = 0.8
-    grade: float = 0.06
+    speed: tuple[float, float] = (0.65, 1.75)
+    turn: float = 1.1
+    grade: float = 0.09
+    stop: float = 0.2
+    stand: float = 0.25
     kick: float = 0.06
-    variability: float = 1.0
+    variability: float = 1.2
 
 
-def draw_subject(rng: np.random.Generator) -> Subject:
+def draw_build(rng: np.random.Generator) -> Build:
     """A body of the range that the policy must master."""
-    return Subject(
-        "drawn",
-        height_m=REFERENCE_HEIGHT_M * rng.uniform(0.96, 1.04),
-        mass_kg=REFERENCE_MASS_KG * rng.uniform(0.88, 1.12),
-        friction=rng.uniform(0.7, 1.1),
-        sole_time_s=rng.uniform(0.006, 0.012),
+
+    def around(share: float) -> float:
+        return float(rng.uniform(1 - share, 1 + share))
+
+    return Build(
+        thigh=around(0.03),
+        shank=around(0.03),
+        hip_width=around(0.06),
+        foot=around(0.05),
+        trunk_mass=around(0.12),
+        leg_mass=around(0.10),
+        friction=float(rng.uniform(0.7, 1.2)),
+        sole_time=float(rng.uniform(0.006, 0.013)),
+    )
+
+
+def draw_habits(rng: np.random.Generator) -> Habits:
+    """Habits of the range that the policy must master."""
+    return Habits(
+        cadence=float(rng.uniform(0.93, 1.07)),
+        step_width=float(rng.uniform(-0.02, 0.03)),
+        toe_out=float(np.radians(rng.uniform(-3, 10))),
+        asymmetry=float(rng.uniform(-0.03, 0.03)),
     )
 
 
@@ -66,61 +79,69 @@ class Task:
 
     def __init__(
         self,
-        n: int,
+        builds: list[Build],
         difficulty: Difficulty,
         gains: np.ndarray,
-        subjects: list[Subject],
         *,
-        timestep: float,
+        timesteps: np.ndarray,
         threads: int = 0,
         rng: np.random.Generator,
-        mount: Mount | None = None,
     ) -> None:
-        models = [build_body(subject, timestep=timestep, mount=mount) for subject in subjects]
+        models = [build_body(build, timestep=step) for build, step in zip(builds, timesteps, strict=True)]
         self.rng, self.difficulty = rng, difficulty
-        self.walkers = Walkers(models, subjects, gains, variability=np.zeros(n), rng=rng, threads=threads)
-        self.until_command = np.zeros(n)
+        self.walkers = Walkers(models, gains, rng=rng, threads=threads)
+        self.until_command = np.zeros(len(builds))
         self.terms: dict[str, np.ndarray] = {}
 
     def seed(self, rng: np.random.Generator) -> None:
         """Use this generator from now on."""
         self.rng = self.walkers.rng = rng
 
-    def draw_commands(self, n: int) -> tuple[np.ndarray, np.ndarray]:
-        """Speeds and turn rates: a third straight, a third gentle, a third sharp and then slower."""
+    def draw_commands(self, n: int, *, may_stop: bool = True) -> tuple[np.ndarray, np.ndarray]:
+        """Speeds and turn rates: stops, straights, gentle bends and, slower, sharp turns."""
         d, rng = self.difficulty, self.rng
         low, high = 1.2 + d.level * (d.speed[0] - 1.2), 1.2 + d.level * (d.speed[1] - 1.2)
-        low, high = min(low, 1.1), max(high, 1.3)
-        speed, kind = rng.uniform(low, high, n), rng.random(n)
+        speed, kind = rng.uniform(min(low, 1.1), max(high, 1.3), n), rng.random(n)
         gentle, sharp = rng.uniform(-0.2, 0.2, n), rng.uniform(-d.turn, d.turn, n)
         turn = np.where(kind < 0.35, 0.0, np.where(kind < 0.6, gentle, sharp)) * d.level
-        return np.where(np.abs(turn) > 0.3, np.minimum(speed, 1.2), speed), turn
+        # The sharper the turn, the slower: 1.3 m/s at 0.3 rad/s, 0.8 m/s at 1.1 rad/s.
+        slow = np.interp(np.abs(turn), [0.3, 1.1], [1.3, 0.8])
+        speed = np.where(np.abs(turn) > 0.3, np.minimum(speed, slow), speed)
+        if may_stop:
+            stop = rng.random(n) < d.stop * d.level
+            speed, turn = np.where(stop, 0.0, speed), np.where(stop, 0.0, turn)
+        return speed, turn
 
-    def reset(self, mask: np.ndarray, *, random: bool = True) -> None:
-        """Start the walkers in `mask` anew in mid-gait."""
+    def reset(self, mask: np.ndarray) -> None:
+        """Start the walkers in `mask` anew, in mid-gait or standing."""
         n = int(mask.sum())
         if n == 0:
             return
         d, rng, walkers = self.difficulty, self.rng, self.walkers
-        self._tilt_gravity(mask, d.grade * d.level if random else 0.0)
-        speed, turn = self.draw_commands(n)
-        walkers.variability.level[mask] = d.variability * d.level
+        self._tilt_gravity(mask)
+        speed, turn = self.draw_commands(n, may_stop=False)
+        standing = rng.random(n) < d.stand * d.level
+        calm = np.where(standing, 0.3, 1.0)[:, None]
         walkers.place(
             mask,
             phase=rng.random(n),
             speed=speed,
             heading=rng.uniform(-np.pi, np.pi, n),
             position=np.zeros((n, 3)),
-            joint_noise=rng.normal(0, 0.02, (n, walkers.qpos.shape[1] - 7)),
-            velocity_noise=rng.normal(0, 0.05, (n, 3)),
+            standing=standing,
+            variability=rng.uniform(0.5, 1.0, n) * d.variability * d.level,
+            habits=[draw_habits(rng) for _ in range(n)],
+            joint_noise=calm * rng.normal(0, 0.02, (n, walkers.qpos.shape[1] - 7)),
+            velocity_noise=calm * rng.normal(0, 0.05, (n, 3)),
         )
-        walkers.turn[mask] = walkers.turn_goal[mask] = turn
-        self.until_command[mask] = rng.uniform(1, 4, n)
+        turn = np.where(standing, 0.0, turn)
+        walkers.turn[mask], walkers.turn_goal[mask] = turn, turn
+        self.until_command[mask] = np.where(standing, rng.uniform(0.5, 4, n), rng.uniform(1, 4, n))
 
-    def _tilt_gravity(self, mask: np.ndarray, grade: float) -> None:
+    def _tilt_gravity(self, mask: np.ndarray) -> None:
         """Sloping ground is level ground under tilted gravity."""
-        n, rng, walkers = int(mask.sum()), self.rng, self.walkers
-        tangent = rng.uniform(0, grade, n) * (rng.random(n) < 0.6)
+        d, rng, walkers, n = self.difficulty, self.rng, self.walkers, int(mask.sum())
+        tangent = rng.uniform(0, d.grade * d.level, n) * (rng.random(n) < 0.6)
         azimuth = rng.uniform(-np.pi, np.pi, n)
         up = np.stack([tangent * np.cos(azimuth), tangent * np.sin(azimuth), np.ones(n)], 1)
         up /= np.linalg.norm(up, axis=1)[:, None]
@@ -139,30 +160,37 @@ class Task:
 
     def _change_commands(self) -> None:
         d, rng, walkers = self.difficulty, self.rng, self.walkers
-        self.until_command -= CONTROL_INTERVAL
+        self.until_command -= walkers.dt
         due = np.flatnonzero(self.until_command <= 0)
-        if len(due) == 0:
+        n = len(due)
+        if n == 0:
             return
-        walkers.speed_goal[due], walkers.turn_goal[due] = self.draw_commands(len(due))
-        self.until_command[due] = rng.uniform(1, 4, len(due))
-        walkers.qvel[due, :3] += rng.normal(0, d.kick * d.level, (len(due), 3)) * [1, 1, 0.3]
+        speed, turn = self.draw_commands(n)
+        # Whoever was told to stand is told to go.
+        again, _ = self.draw_commands(n, may_stop=False)
+        stood = walkers.speed_goal[due] < 0.2
+        walkers.speed_goal[due] = np.where(stood, again, speed)
+        walkers.turn_goal[due] = np.where(stood, 0.0, turn)
+        self.until_command[due] = rng.uniform(1.5, 5, n)
+        kick = d.kick * d.level * np.where(walkers.gate.value[due] < 0.5, 0.3, 1.0)[:, None]
+        walkers.qvel[due, :3] += kick * rng.standard_normal((n, 3)) * [1, 1, 0.3]
 
 
-_OBSERVATION_SPACE = gym.spaces.Box(-OBSERVATION_LIMIT, OBSERVATION_LIMIT, (N_OBSERVATION,), np.float32)
+_OBSERVATION_SPACE = gym.spaces.Box(-LIMIT, LIMIT, (N_OBSERVATION,), np.float32)
 _ACTION_SPACE = gym.spaces.Box(-1.0, 1.0, (N_ACTION,), np.float32)
 
 
 class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
-    """One walker that follows random commands of speed and turn rate.
+    """One walker that follows random commands of speed and turn rate, stops and starts.
 
-    Observation: Box(-6, 6, (80,), float32), mirrored so that the stance leg is always the right one: height,
+    Observation: Box(-6, 6, (82,), float32), mirrored so that the stance leg is always the right one: height,
     gravity in the pelvis, velocities, joint angles and rates, foot pressure, step phase, commands, residual,
-    grade, gait variability. Action: Box(-1, 1, (15,), float32), residual on the joint servos' targets, held for
+    grade, gait variability, gate of standing. Action: Box(-1, 1, (15,), float32), residual on the joint servos' targets, held for
     30 ms. Reward: `simulate.reward`. A fall terminates; the time limit (10 s) truncates.
 
     Parameters
     ----------
-    subject : who walks
+    build : the body that walks
     difficulty : what is asked
     feedback_gains : (32,) balance feedback under the action; the hand-set start when None
     """
@@ -171,7 +199,7 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
 
     def __init__(
         self,
-        subject: Subject | None = None,
+        build: Build | None = None,
         difficulty: Difficulty | None = None,
         feedback_gains: np.ndarray | None = None,
         render_mode: str | None = None,
@@ -180,11 +208,10 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
         self.observation_space, self.action_space = _OBSERVATION_SPACE, _ACTION_SPACE
         gains = np.array(GAIN_START) if feedback_gains is None else np.asarray(feedback_gains)
         self._task = Task(
-            1,
+            [build or Build()],
             difficulty or Difficulty(kick=0.0),
             gains,
-            [subject or Subject()],
-            timestep=0.001,
+            timesteps=np.array([0.001]),
             rng=np.random.default_rng(0),
         )
 
@@ -241,12 +268,13 @@ class WalkVectorEnv(gym.vector.VectorEnv):
         bodies, commands = np.random.SeedSequence(seed).spawn(2)
         draw = np.random.default_rng(bodies)
         gains = np.array(GAIN_START) if feedback_gains is None else np.asarray(feedback_gains)
+        # People of other statures have other time scales (models.subject).
+        timesteps = timestep * draw.uniform(0.94, 1.09, num_envs)
         self.task = Task(
-            num_envs,
+            [draw_build(draw) for _ in range(num_envs)],
             difficulty or Difficulty(),
             gains,
-            [draw_subject(draw) for _ in range(num_envs)],
-            timestep=timestep,
+            timesteps=timesteps,
             threads=threads,
             rng=np.random.default_rng(commands),
         )

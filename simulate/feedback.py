@@ -79,6 +79,7 @@ GAIN_SCALE = Gains(
     0.4, 0.05, 0.08, 0.5, 0.08, 0.08, 0.5, 0.08, 0.05, 0.4, 0.08, 0.08, 0.15, 0.2, 0.2, 0.15, 0.3, 0.3, 0.05,
     0.5, 0.2, 0.2, 0.1, 0.5, 0.2, 0.3, 0.05, 0.3, 0.15, 0.2, 0.15, 0.06,
 )  # fmt: skip
+_FADE, _BRAKE = 0.9, 0.2  # of the push-off; rad per m/s
 FOOT_OFFSET = 0.075  # m from the stance foot to the pelvis, sideways, at which no correction is made
 
 
@@ -87,7 +88,7 @@ class Balance:
     """What the feedback looks at, all (n,), in the heading frame and mirrored to right stance.
 
     pitch (nose down positive) and roll are relative to gravity, yaw_error to the commanded heading;
-    `foot_x`, `foot_y` are the pelvis relative to the stance foot (m); `step_phase` runs 0..1 over a step.
+    `foot_y` is the pelvis relative to the stance foot (m); `step_phase` runs 0..1 over a step; `speed` is commanded.
     """
 
     pitch: np.ndarray
@@ -103,6 +104,7 @@ class Balance:
     mean_lateral_velocity: np.ndarray
     foot_y: np.ndarray
     step_phase: np.ndarray
+    speed: np.ndarray
 
 
 _LUMBAR_ROLL, _LUMBAR_PITCH = INDEX["lumbar_roll"], INDEX["lumbar_pitch"]
@@ -128,10 +130,12 @@ def feedback(gains: np.ndarray, b: Balance) -> np.ndarray:
     g = Gains(*np.moveaxis(np.asarray(gains), -1, 0))
     swing = np.clip((b.step_phase - 0.2) / 0.15, 0, 1)  # after toe-off of the other foot
     late = np.clip((b.step_phase - 0.5) / 0.2, 0, 1)
+    # Walking slowly, the push-off fades and the swing leg is placed to brake.
+    slow = np.clip(1 - b.speed / 0.8, 0, 1)
     out = np.zeros((len(b.pitch), N_SERVOS))
     out[:, _LUMBAR_ROLL] = -g.torso_roll * b.roll - g.torso_roll_rate * b.roll_rate
     out[:, _LUMBAR_PITCH] = (
-        -g.torso_pitch * b.pitch - g.torso_pitch_rate * b.pitch_rate + g.torso_pitch_offset
+        -g.torso_pitch * b.pitch - g.torso_pitch_rate * b.pitch_rate + g.torso_pitch_offset - 0.02 * slow
     )
     out[:, _STANCE["hip_flexion"]] = (
         -g.stance_hip_pitch * b.pitch - g.stance_hip_pitch_rate * b.pitch_rate + g.stance_hip_offset
@@ -156,6 +160,7 @@ def feedback(gains: np.ndarray, b: Balance) -> np.ndarray:
         + g.place_speed * b.speed_error
         + g.place_mean_speed * b.mean_speed_error
         + g.place_offset
+        + _BRAKE * slow * np.clip(b.speed_error, -0.2, 0.9)
     )
     out[:, _SWING["hip_adduction"]] = swing * (
         g.width_roll * b.roll

@@ -18,10 +18,11 @@ import cma
 import numpy as np
 import torch
 
-from footfall.simulate.env import Difficulty, Task, WalkVectorEnv, draw_subject
+from footfall.simulate.env import Difficulty, Task, WalkVectorEnv, draw_build
 from footfall.simulate.feedback import GAIN_SCALE, GAIN_START
 from footfall.simulate.ppo import HORIZON, Learner, Schedule
-from footfall.simulate.walkers import CONTROL_INTERVAL, N_ACTION, N_OBSERVATION
+from footfall.simulate.observation import N_OBSERVATION
+from footfall.simulate.walkers import CONTROL_INTERVAL, N_ACTION
 from footfall.tables import replacing
 
 ENVS = 64
@@ -33,11 +34,10 @@ def tune_gains(seed: int, generations: int) -> np.ndarray:
     n = _CANDIDATES * _REPEATS
     bodies = np.random.default_rng([seed, 1])
     task = Task(
-        n,
+        [draw_build(bodies) for _ in range(n)],
         Difficulty(level=0.0),
         np.tile(GAIN_START, (n, 1)),
-        [draw_subject(bodies) for _ in range(n)],
-        timestep=0.003,
+        timesteps=np.full(n, 0.003),
         rng=np.random.default_rng(0),
     )
     start, scale = np.array(GAIN_START), np.array(GAIN_SCALE)
@@ -75,7 +75,7 @@ def tune_gains(seed: int, generations: int) -> np.ndarray:
 
 def schedule(samples: int, total: int) -> tuple[float, Schedule]:
     """Difficulty level, exploration and step-size bounds after so many samples."""
-    level = float(np.clip((samples - 0.3e6) / 1.2e6, 0, 1))
+    level = float(np.clip((samples - 0.3e6) / 1.7e6, 0, 1))
     part = samples / total
     log_sd_max = float(np.interp(part, [0, 0.3, 0.8, 1], [-2.0, -2.5, -3.1, -3.4]))
     rate_max = float(np.interp(part, [0, 0.5, 1], [6e-4, 4e-4, 1e-4]))
@@ -152,7 +152,7 @@ def main() -> None:
         "--out", type=Path, required=True, help="folder of checkpoints and log; resumes from it"
     )
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--samples", type=float, default=10e6, help="control steps to learn from")
+    parser.add_argument("--samples", type=float, default=12e6, help="control steps to learn from")
     parser.add_argument("--generations", type=int, default=200, help="of CMA-ES for the feedback gains")
     parser.add_argument("--threads", type=int, default=2, help="for the physics")
     arguments = parser.parse_args()
