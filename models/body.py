@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import mujoco
 import numpy as np
 
+from footfall.conventions import GRAVITY
 from footfall.errors import InputError
 from footfall.models.subject import Subject
 
@@ -135,6 +136,7 @@ def build_body(
     spec.compiler.degree = False
     option = spec.option
     option.timestep = timestep
+    option.gravity = [0, 0, -GRAVITY]
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     option.solver = mujoco.mjtSolver.mjSOL_NEWTON
     option.cone = mujoco.mjtCone.mjCONE_PYRAMIDAL

@@ -14,13 +14,13 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
+from footfall.conventions import GRAVITY
 from footfall.models.body import Mount, build_body
 from footfall.models.subject import REFERENCE_HEIGHT_M, REFERENCE_MASS_KG, Subject
 from footfall.simulate.feedback import GAIN_START
 from footfall.simulate.reward import reward_terms, total
 from footfall.simulate.walkers import (
     CONTROL_INTERVAL,
-    GRAVITY,
     N_ACTION,
     N_OBSERVATION,
     OBSERVATION_LIMIT,

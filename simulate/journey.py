@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 
 import footfall
+from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
 from footfall.models import body
 from footfall.models.body import Ground, Mount, build_body
@@ -19,7 +20,7 @@ from footfall.models.subject import Subject
 from footfall.simulate.ground import ground_lookup
 from footfall.simulate.route import Route
 from footfall.simulate.steer import Pursuit
-from footfall.simulate.truth import GRAVITY, at_rest, divisor, heading_of, imu_truth, runs
+from footfall.simulate.truth import at_rest, divisor, imu_truth, runs
 from footfall.simulate.walk import TrueFootfalls, Walk
 from footfall.simulate.walkers import CONTROL_INTERVAL, N_ACTION, Walkers
 from footfall.streams import stream

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from footfall.conventions import wrap
 from footfall.errors import InputError
 from footfall.simulate.route import Route
-from footfall.simulate.walkers import CONTROL_INTERVAL, wrap
+from footfall.simulate.walkers import CONTROL_INTERVAL
 
 LOOK_AHEAD = 1.6  # m
 TURN_LIMIT = 0.7  # rad/s

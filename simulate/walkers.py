@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
+from footfall.conventions import wrap
 from footfall.models import body, gait
 from footfall.models.subject import Subject
 from footfall.simulate.feedback import (
@@ -28,7 +29,6 @@ from footfall.simulate.feedback import (
 from footfall.simulate.variability import Variability
 
 CONTROL_INTERVAL = 0.030  # s
-GRAVITY = 9.80665
 ACCELERATION = 0.4  # m/s2, slew of the commanded speed
 TURN_ACCELERATION = 1.5  # rad/s2
 _MEAN_VELOCITY_S = 0.5
@@ -88,11 +88,6 @@ def rotation(quaternion: np.ndarray) -> np.ndarray:
         ],
         -2,
     )
-
-
-def wrap(angle: np.ndarray) -> np.ndarray:
-    """Angle in [-pi, pi)."""
-    return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
 @dataclass(frozen=True)
