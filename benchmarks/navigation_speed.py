@@ -11,12 +11,12 @@ from itertools import product
 
 import numpy as np
 
+from footfall.conventions import GRAVITY
 from footfall.hdr.hdr import HdrParams, headings, trace
 from footfall.hdr.methods import Reckoning, tracks
 from footfall.pdr import _kernels, _plain
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.pdr import dead_reckon
-from footfall.pdr.strapdown import GRAVITY
 from footfall.recording import Recording
 
 RATE, STRIDE_S = 200, 1.1

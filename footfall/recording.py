@@ -16,8 +16,8 @@ GYRO = ("gyro_x", "gyro_y", "gyro_z")
 ACCEL = ("accel_x", "accel_y", "accel_z")
 UNITS = {
     "t": "s",
-    **{name: "rad/s" for name in GYRO},
-    **{name: "m/s2" for name in ACCEL},
+    **dict.fromkeys(GYRO, "rad/s"),
+    **dict.fromkeys(ACCEL, "m/s2"),
     "temperature": "degC",
 }
 
@@ -47,7 +47,9 @@ class Recording:
             raise InputError(f"recording: {n} samples, expected at least 2")
         for name in ("gyro", "accel"):
             if getattr(self, name).shape != (n, 3):
-                raise InputError(f"recording: {name} has shape {getattr(self, name).shape}, expected ({n}, 3)")
+                raise InputError(
+                    f"recording: {name} has shape {getattr(self, name).shape}, expected ({n}, 3)"
+                )
         if self.temperature is not None and self.temperature.shape != (n,):
             raise InputError(f"recording: temperature has shape {self.temperature.shape}, expected ({n},)")
         for name in ("t", "gyro", "accel", "temperature"):

@@ -90,7 +90,9 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
     try:
         table = read(source)
     except (pa.ArrowException, OSError) as error:
-        raise InputError(f"{source}: not a readable Parquet or CSV file ({str(error).splitlines()[0]})") from None
+        raise InputError(
+            f"{source}: not a readable Parquet or CSV file ({str(error).splitlines()[0]})"
+        ) from None
     columns = {}
     for name, column in zip(table.column_names, table.columns, strict=True):
         kind = column.type

@@ -28,7 +28,6 @@ HDR_UNITS: Mapping[str, str] = {
 }
 
 
-
 @dataclass(frozen=True)
 class Reckoning:
     """A recording, where it starts, and its footfalls, computed once for all the methods that ask."""

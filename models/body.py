@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import mujoco
 import numpy as np
 
+from footfall.conventions import GRAVITY
 from footfall.errors import InputError
 from footfall.models.subject import REFERENCE_HEIGHT_M, Build
 
@@ -70,7 +71,6 @@ _LUMBAR_AXES = {
     "lumbar_yaw": ((0, 0, 1), (-35, 35), 2.0, 0.01, 0.0),
 }
 
-GRAVITY = 9.80665  # m/s2
 ANKLE_HEIGHT = 0.075  # m above the ground, sole included, reference body
 HIP_HALF_WIDTH = 0.088
 HIP_HEIGHT = 0.95  # of the pelvis in standing

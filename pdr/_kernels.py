@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numba import njit
 
-GRAVITY = 9.80665
+from footfall.conventions import GRAVITY
 
 
 @njit(cache=True)

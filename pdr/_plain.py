@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from footfall.pdr._kernels import GRAVITY
+from footfall.conventions import GRAVITY
 
 
 class Strapdown:

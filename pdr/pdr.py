@@ -12,11 +12,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
 from footfall.pdr import _kernels
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.stance import Detector, StanceParams, Stances, ThresholdDetector, find_stances
-from footfall.pdr.strapdown import GRAVITY, ORIGIN, heading_of
+from footfall.pdr.strapdown import ORIGIN
 from footfall.recording import Recording
 
 REST_BLOCK_S = 0.5
@@ -187,7 +188,7 @@ def dead_reckon(
         params.tilt_gain,
     )
     quaternion, position = quaternion[stances.footfalls], position[stances.footfalls]
-    heading = np.unwrap(heading_of(quaternion))
+    heading = heading_of(quaternion)
     turn = Rotation.from_rotvec([0.0, 0.0, start.heading - heading[0]])
     position = turn.apply(position - position[0]) + np.asarray(start.position)
     heading = heading - heading[0] + start.heading

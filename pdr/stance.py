@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from footfall.pdr.strapdown import GRAVITY
+from footfall.conventions import GRAVITY
 
 
 class Detector(Protocol):

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 from footfall.errors import InputError
 from footfall.pdr import _kernels
 
-GRAVITY = _kernels.GRAVITY
 ORIGIN = (0.0, 0.0, 0.0)
 
 
@@ -62,12 +61,3 @@ def integrate(
         np.asarray(position, dtype=float),
     )
     return Trajectory(position=p, quaternion=q, velocity=v)
-
-
-def heading_of(quaternion: np.ndarray) -> np.ndarray:
-    """Heading of the body's x axis (rad, counter-clockwise from x, wrapped) of (..., 4) quaternions.
-
-    Meaningful only where the x axis is far from vertical: at stance, never in swing.
-    """
-    w, x, y, z = np.moveaxis(np.asarray(quaternion, dtype=float), -1, 0)
-    return np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from footfall.conventions import GRAVITY
 from footfall.models.imu import ImuUnit
 from footfall.pdr.allan import allan_deviation, fit_allan, suggest_bias_time
 from footfall.recording import Recording
 from footfall.simulate.record import record
-from footfall.simulate.truth import GRAVITY
 from footfall.simulate.walk import TrueFootfalls, Walk
 
 

@@ -13,9 +13,9 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from footfall.conventions import heading_of, wrap
 from footfall.errors import InputError
 from footfall.pdr.track import Track
-from footfall.simulate.truth import heading_of
 from footfall.simulate.walk import Walk
 
 TIME_SLACK = 0.1  # s; an IMU's clock may run off by this much over a walk
@@ -92,7 +92,7 @@ def compare(track: Track, walk: Walk) -> Comparison:
 
     yaw = heading_of(_quaternion_at(walk, t))
     near = np.interp(t, walk.footfalls.t, walk.footfalls.heading)
-    heading = near + _wrap(yaw - near)
+    heading = near + wrap(yaw - near)
     # From row to row the error changes by far less than half a turn, even where footfalls were missed.
     error = np.unwrap(track.heading - heading)
     turn = error[0]
@@ -191,8 +191,3 @@ def _quaternion_at(walk: Walk, t: np.ndarray) -> np.ndarray:
     share = ((t - walk.t[i]) / (walk.t[i + 1] - walk.t[i]))[:, None]
     between = (1 - share) * before + share * after
     return between / np.linalg.norm(between, axis=1, keepdims=True)
-
-
-def _wrap(angle: np.ndarray) -> np.ndarray:
-    """To -pi..pi."""
-    return (angle + np.pi) % (2 * np.pi) - np.pi

@@ -14,7 +14,8 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from footfall.models.body import GRAVITY, build_body
+from footfall.conventions import GRAVITY
+from footfall.models.body import build_body
 from footfall.models.subject import Build, Habits
 from footfall.simulate.feedback import GAIN_START
 from footfall.simulate.observation import LIMIT, N_OBSERVATION

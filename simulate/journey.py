@@ -14,15 +14,16 @@ import mujoco
 import numpy as np
 
 import footfall
+from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
 from footfall.models import body
-from footfall.models.body import GRAVITY, Ground, Mount, build_body
+from footfall.models.body import Ground, Mount, build_body
 from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import Subject
 from footfall.simulate.ground import ground_lookup
 from footfall.simulate.route import Route
 from footfall.simulate.steer import Pursuit, Stop
-from footfall.simulate.truth import at_rest, divisor, heading_of, imu_truth, runs
+from footfall.simulate.truth import at_rest, divisor, imu_truth, runs
 from footfall.simulate.walk import TrueFootfalls, Walk
 from footfall.simulate.walkers import N_ACTION, Walkers
 from footfall.streams import stream
@@ -189,7 +190,9 @@ def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | 
     return _Record(record[:, :3] * subject.scale, record[:, 3:7], record[:, 7] / weight)
 
 
-def walk(plan: Plan, policy: Policy | None = None, on_progress: Callable[[float], None] | None = None) -> Walk:
+def walk(
+    plan: Plan, policy: Policy | None = None, on_progress: Callable[[float], None] | None = None
+) -> Walk:
     """The truth of one walk along the plan's route, from standing to standing.
 
     Parameters

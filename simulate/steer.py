@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from footfall.conventions import wrap
 from footfall.errors import InputError
 from footfall.simulate.route import Route
-from footfall.simulate.walkers import wrap
 
 TURN_LIMIT = 1.0  # rad/s
 SLOWING = 0.5  # m/s2, before corners and stops
@@ -92,7 +92,9 @@ class Pursuit:
         """Every stop, the last one too, has been stood through."""
         return not self._stops
 
-    def command(self, x: float, y: float, heading: float, speed: float, standing: bool) -> tuple[float, float]:
+    def command(
+        self, x: float, y: float, heading: float, speed: float, standing: bool
+    ) -> tuple[float, float]:
         """Speed (m/s) and turn rate (rad/s) for a walker at (x, y) with commanded heading and speed.
 
         Raises

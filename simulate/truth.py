@@ -14,9 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from footfall.conventions import GRAVITY
 from footfall.errors import InputError
-
-GRAVITY = 9.80665
 
 # The foot is at rest on the ground: it carries load while the IMU neither travels nor turns fast.
 REST_SPEED = 0.20  # m/s
@@ -80,7 +79,7 @@ def imu_truth(position: np.ndarray, quaternion: np.ndarray, physics_step: float,
 
     attitude = Rotation.from_quat(quaternion[index], scalar_first=True)
     turn = (attitude[:-1].inv() * attitude[1:]).as_rotvec()
-    push = np.diff(velocity, axis=0) + [0, 0, GRAVITY * interval]
+    push = np.diff(velocity, axis=0) + np.array([0, 0, GRAVITY * interval])
     middle = attitude[:-1] * Rotation.from_rotvec(turn / 2)
     force = middle.inv().apply(push)
     return ImuTruth(
@@ -112,9 +111,3 @@ def runs(flag: np.ndarray) -> np.ndarray:
     """(m, 2) first and one-past-last row of each run of True."""
     edges = np.diff(np.concatenate([[False], flag, [False]]).astype(np.int8))
     return np.column_stack([np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)])
-
-
-def heading_of(quaternion: np.ndarray) -> np.ndarray:
-    """Heading (rad) of the body's x axis, unwrapped along the rows of (n, 4): rows at most half a turn apart."""
-    w, x, y, z = quaternion.T
-    return np.unwrap(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))

@@ -14,6 +14,7 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
+from footfall.conventions import wrap
 from footfall.models import body, gait
 from footfall.models.subject import Habits
 from footfall.simulate.feedback import FOOT_OFFSET, Balance, feedback, mirror_where
@@ -66,11 +67,6 @@ def rotation(quaternion: np.ndarray) -> np.ndarray:
         1 - 2 * (x * x + y * y),
     )
     return out
-
-
-def wrap(angle: np.ndarray) -> np.ndarray:
-    """Angle in [-pi, pi)."""
-    return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
 @dataclass(frozen=True)

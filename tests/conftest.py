@@ -3,6 +3,11 @@
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+# Compilation and a busy machine make single examples slow; no test judges by the clock.
+settings.register_profile("footfall", deadline=None)
+settings.load_profile("footfall")
 
 
 @pytest.fixture(scope="session")
@@ -16,7 +21,7 @@ def real_data() -> Path:
 
 @pytest.fixture(scope="session")
 def short_plan():  # type: ignore[no-untyped-def]
-    """A 40 m walk with one 90 degree corner, the stock walker with people's variability, 25 s of calibration."""
+    """A 40 m walk with one 90 degree corner, people's variability, 26 s of calibration."""
     from footfall.scenarios.path import PathSpec, build_path
     from footfall.simulate.journey import Plan
 

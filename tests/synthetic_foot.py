@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from footfall.conventions import GRAVITY, heading_of
 from footfall.pdr.footfalls import Footfalls
-from footfall.pdr.strapdown import GRAVITY, heading_of
 from footfall.recording import Recording
 
 STANCE = 0.3  # share of the stride that the ball of the foot is at rest
@@ -39,7 +39,7 @@ class SyntheticWalk:
 
     def heading(self, t: np.ndarray) -> np.ndarray:
         """True heading (rad, unwrapped) at stamps that lie in stances."""
-        return np.unwrap(heading_of(self.quaternion[self.at(t)]))
+        return heading_of(self.quaternion[self.at(t)])
 
     def recording(
         self,

@@ -24,7 +24,7 @@ def test_mass_and_stature_follow_the_subject(subject: Subject) -> None:
     assert leg == pytest.approx((0.245 + 0.246) * subject.height_m + 0.06 * subject.scale, rel=1e-9)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.lists(st.floats(-0.5, 0.5), min_size=17, max_size=17))
 def test_the_body_is_its_own_mirror_image(angles: list[float]) -> None:
     """Mirrored joint angles put each foot where the mirror image of the other one is."""

@@ -39,10 +39,12 @@ def test_seeded_resets_and_steps_repeat(env: gym.Env) -> None:
 
 def test_falls_terminate_and_time_truncates(env: gym.Env) -> None:
     env.reset(seed=1)
-    for steps in range(400):
+    steps = 0
+    while steps < 400:
         _, reward, terminated, truncated, info = env.step(np.ones(15, dtype=np.float32))
         assert isinstance(reward, float)
         assert isinstance(terminated, bool)
+        steps += 1
         if terminated:
             break
     assert terminated

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from synthetic_foot import footfalls
 
@@ -84,7 +84,6 @@ def test_trap_9_what_is_taken_for_drift_is_decided_by_speed_over_radius():
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(deadline=None)
 def test_the_controller_takes_one_footfall_to_act(seed):
     """I_i uses w_{i-1}: the first increment comes with the second stride."""
     rng = np.random.default_rng(seed)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from synthetic_foot import footfalls
 
@@ -37,7 +37,6 @@ def delag(rate, interval, tau):
 
 
 @given(seeds, sets)
-@settings(deadline=None)
 def test_delagging_undoes_the_double_low_pass_filter(seed, params):
     walk = strides(seed)
     found = trace(walk, params)
@@ -45,7 +44,6 @@ def test_delagging_undoes_the_double_low_pass_filter(seed, params):
 
 
 @given(seeds, sets)
-@settings(deadline=None)
 def test_the_corrected_rate_is_the_raw_one_plus_the_delagged_integrator(seed, params):
     walk = strides(seed)
     found = trace(walk, params)
@@ -59,7 +57,6 @@ def test_it_is_not_the_raw_rate_plus_the_integrator():
 
 
 @given(seeds, sets)
-@settings(deadline=None)
 def test_heading_correction_in_closed_form(seed, params):
     """sum(T delag(I)) = sum(T I) + 2 tau I_N + tau^2 (I_N - I_{N-1}) / T_N."""
     walk = strides(seed)
@@ -71,7 +68,6 @@ def test_heading_correction_in_closed_form(seed, params):
 
 
 @given(seeds, sets)
-@settings(deadline=None)
 def test_a_controller_that_never_acts_changes_nothing(seed, params):
     walk = strides(seed)
     idle = trace(walk, HdrParams(params.tau_s, 0.0, params.theta_w))
@@ -79,7 +75,6 @@ def test_a_controller_that_never_acts_changes_nothing(seed, params):
 
 
 @given(seeds, sets)
-@settings(deadline=None)
 def test_left_and_right_are_alike(seed, params):
     walk = strides(seed)
     mirrored = footfalls(-walk.rate[1:], walk.interval[1:])
@@ -87,7 +82,6 @@ def test_left_and_right_are_alike(seed, params):
 
 
 @given(seeds, sets)
-@settings(deadline=None)
 def test_bounds_of_attenuator_and_increment(seed, params):
     found = trace(strides(seed), params)
     assert ((found.attenuator >= 0) & (found.attenuator <= 1)).all()
@@ -95,7 +89,6 @@ def test_bounds_of_attenuator_and_increment(seed, params):
 
 
 @given(seeds, st.floats(0, 0.5))
-@settings(deadline=None)
 def test_the_basic_controller_is_equations_4_and_5(seed, i_c_deg_s):
     walk = strides(seed)
     i_c = i_c_deg_s * DEG
@@ -112,7 +105,6 @@ def test_the_basic_controller_is_equations_4_and_5(seed, i_c_deg_s):
     st.lists(st.tuples(seeds, st.integers(2, 120)), min_size=1, max_size=4),
     st.lists(sets, min_size=1, max_size=5),
 )
-@settings(deadline=None)
 def test_batch_equals_streaming_for_ragged_walks_and_mixed_sets(walks, params):
     walks = [strides(seed, n) for seed, n in walks]
     params = [*params, HdrParams.basic(), HdrParams()]

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from synthetic_foot import footfalls, walk
@@ -101,7 +101,6 @@ def test_without_a_correction_the_track_is_dead_reckonings():
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(deadline=None)
 def test_turning_keeps_every_strides_length_and_height(seed):
     rng = np.random.default_rng(seed)
     walked = footfalls(rng.normal(0, 0.1, 50), rng.uniform(0.8, 1.5, 50))
@@ -116,7 +115,6 @@ def test_turning_keeps_every_strides_length_and_height(seed):
 
 
 @given(st.floats(-0.01, 0.01), st.integers(0, 2**32 - 1))
-@settings(deadline=None)
 def test_the_true_heading_gives_the_true_track(drift, seed):
     """Dead reckoning with a drift, turned back by that drift, lands where the walk without it did."""
     rate = np.random.default_rng(seed).normal(0, 0.1, 300)

@@ -74,9 +74,8 @@ def test_a_mount_turns_the_measurement_and_not_the_walk(short_plan: Plan, short_
     medial = walk(replace(short_plan, mount=MOUNTS["medial"]))
     n = min(len(medial.t), len(short_walk.t))
     still = int(25 * short_plan.rate_hz)
-    relative = (
-        Rotation.from_quat(short_walk.quaternion[0], scalar_first=True).inv()
-        * Rotation.from_quat(medial.quaternion[0], scalar_first=True)
+    relative = Rotation.from_quat(short_walk.quaternion[0], scalar_first=True).inv() * Rotation.from_quat(
+        medial.quaternion[0], scalar_first=True
     )
     # The two walks may begin a sample or two apart: compare the sorted norms, then the attitude at the start.
     assert np.degrees(relative.magnitude()) == pytest.approx(20.0, abs=2.0)
@@ -92,14 +91,18 @@ def test_it_climbs_what_the_ground_climbs(short_plan: Plan) -> None:
     ground = Ground(-12.0, -12.0, 0.5, np.tile(grade * x, (90, 1)).astype(np.float32))
     climbing = walk(replace(short_plan, ground=ground))
     falls = climbing.footfalls.position
-    np.testing.assert_allclose(falls[:, 2] - grade * falls[:, 0], falls[0, 2] - grade * falls[0, 0], atol=0.012)
+    np.testing.assert_allclose(
+        falls[:, 2] - grade * falls[:, 0], falls[0, 2] - grade * falls[0, 0], atol=0.012
+    )
     assert falls[-1, 2] - falls[0, 2] > 0.6
 
 
 def test_a_fall_ends_the_walk_with_a_sentence(short_plan: Plan) -> None:
     policy = stock_policy()
     lame = Policy(policy.weights, policy.biases, np.zeros(32), "lame")
-    with pytest.raises(FallError, match=r"short: the walker fell at -?\d+ m \(\d+ s, seed 5, pace 1\.3 m/s\)"):
+    with pytest.raises(
+        FallError, match=r"short: the walker fell at -?\d+ m \(\d+ s, seed 5, pace 1\.3 m/s\)"
+    ):
         walk(short_plan, lame)
 
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from paths import arc, build, corner, straight
 from pydantic import ValidationError
@@ -25,7 +25,6 @@ def tangent(element):
 
 
 @given(paths)
-@settings(deadline=None)
 def test_length_is_straights_and_arcs_less_what_corners_take_from_straights(elements):
     expected = 0.0
     for i, element in enumerate(elements):
@@ -43,7 +42,6 @@ def test_length_is_straights_and_arcs_less_what_corners_take_from_straights(elem
 
 
 @given(paths)
-@settings(deadline=None)
 def test_heading_is_the_sum_of_turns_and_the_integral_of_curvature(elements):
     path = build(*elements)
     turns = sum(math.radians(element.get("turn_deg", 0.0)) for element in elements)
@@ -53,7 +51,6 @@ def test_heading_is_the_sum_of_turns_and_the_integral_of_curvature(elements):
 
 
 @given(paths, st.data())
-@settings(deadline=None)
 def test_pose_is_the_integral_of_heading_and_heading_that_of_curvature(elements, data):
     pieces = build(*elements).pieces
     i = data.draw(st.integers(0, len(pieces.length) - 1))
@@ -68,7 +65,6 @@ def test_pose_is_the_integral_of_heading_and_heading_that_of_curvature(elements,
 
 
 @given(paths)
-@settings(deadline=None)
 def test_the_route_has_no_gaps(elements):
     path = build(*elements)
     edges = path.pieces.start[1:]
@@ -78,7 +74,6 @@ def test_the_route_has_no_gaps(elements):
 
 
 @given(paths, st.floats(-179, 179))
-@settings(deadline=None)
 def test_closure_does_not_depend_on_the_first_heading(elements, turn_deg):
     # What follows an arc of 5 m radius is the same path, turned: its own displacement keeps its size.
     plain = build(straight(20.0), *elements)
@@ -93,7 +88,6 @@ def test_closure_does_not_depend_on_the_first_heading(elements, turn_deg):
 
 
 @given(paths)
-@settings(deadline=None)
 def test_walked_backwards_a_path_is_as_long_and_ends_as_far_away(elements):
     there, back = build(*elements), build(*elements[::-1])
     assert back.route.length == pytest.approx(there.route.length, abs=1e-8)
@@ -146,7 +140,6 @@ def test_a_corner_at_either_end_of_a_closed_path_trims_the_straight_at_the_other
 
 
 @given(st.lists(st.tuples(st.floats(15, 100), st.floats(-8, 8)), min_size=1, max_size=6), st.floats(2, 30))
-@settings(deadline=None)
 def test_climb_is_the_sum_of_grade_times_length(stretches, transition):
     path = build(
         straight(20.0),
@@ -159,7 +152,6 @@ def test_climb_is_the_sum_of_grade_times_length(stretches, transition):
 
 
 @given(st.floats(-8, 8), st.floats(2, 30))
-@settings(deadline=None)
 def test_grade_changes_linearly_over_the_transition_and_is_exact_beyond(grade, transition):
     path = build(straight(50.0), straight(100.0, grade), straight(50.0), vertical_transition_m=transition)
     r, h = path.route, 1e-3

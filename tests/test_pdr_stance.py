@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from synthetic_foot import walk
 
@@ -22,7 +22,6 @@ def footfall_times(truth, rows=slice(1, None)):
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(0.001, 0.2))
-@settings(deadline=None)
 def test_moving_mean_is_the_mean_over_the_window(seed, window):
     rng = np.random.default_rng(seed)
     t = np.cumsum(rng.uniform(0.002, 0.02, 40))
@@ -94,7 +93,6 @@ def test_no_rest_no_stance():
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(deadline=None)
 def test_footfalls_are_at_rest_and_never_closer_than_a_stride(seed):
     rng = np.random.default_rng(seed)
     edges = np.cumsum(rng.uniform(0.02, 1.0, 20))

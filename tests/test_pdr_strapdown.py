@@ -5,9 +5,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 from synthetic_foot import increments, walk
 
+from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
 from footfall.pdr import _kernels, _plain
-from footfall.pdr.strapdown import GRAVITY, heading_of, integrate
+from footfall.pdr.strapdown import integrate
 
 
 def strapdown_error(truth, gyro, accel):

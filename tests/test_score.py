@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from synthetic import synthetic_walk
 
@@ -66,7 +66,6 @@ turns = st.lists(st.floats(-1.5, 1.5), min_size=5, max_size=40).map(np.cumsum)
 
 
 @given(turns)
-@settings(deadline=None)
 def test_the_truth_scores_nought(heading):
     walk = planar_walk(heading)
     assert figures(score(truth_as_track(walk), walk)) == pytest.approx([0] * 6, abs=1e-9)
@@ -80,7 +79,6 @@ def test_the_truth_of_a_coning_foot_scores_nought_anywhere_in_its_stances():
 
 
 @given(st.floats(-400, 400).filter(lambda d: abs(d) > 1), st.integers(50, 200))
-@settings(deadline=None)
 def test_constant_drift_gives_a_mean_of_half_the_final_error_even_beyond_a_turn(final_deg, strides):
     walk = planar_walk(np.zeros(strides + 1))
     drift = np.radians(final_deg) * np.arange(strides + 1) / strides
@@ -103,7 +101,6 @@ def test_a_drift_of_a_turn_and_a_half_is_counted_in_full_on_a_loop():
 
 
 @given(turns, st.floats(0.8, 1.2))
-@settings(deadline=None)
 def test_a_scale_error_stretches_everything_about_the_start(heading, scale):
     walk = planar_walk(heading)
     result = score(reckoned(walk, 0.0, scale), walk)
@@ -116,7 +113,6 @@ def test_a_scale_error_stretches_everything_about_the_start(heading, scale):
 @given(
     turns, st.floats(-3, 3), st.floats(-50, 50), st.floats(-50, 50), st.integers(-2, 2), st.integers(0, 99)
 )
-@settings(deadline=None)
 def test_a_track_may_start_anywhere(heading, turn, x, y, whole_turns, seed):
     walk = planar_walk(heading)
     track = reckoned(walk, np.cumsum(np.random.default_rng(seed).normal(0, 0.1, len(heading))), 1.02)

@@ -31,7 +31,7 @@ def test_a_level_path_has_no_terrain():
 @given(
     st.floats(-8, 8).filter(lambda g: abs(g) > 0.1), st.floats(10, 30), st.floats(-3, 3), st.floats(-90, 90)
 )
-@settings(deadline=None, max_examples=15)
+@settings(max_examples=15)
 def test_a_sloping_street_is_level_across_and_follows_its_elevation(grade, transition, offset, turn_deg):
     # The slope begins far from the corner, which only turns the street against the grid.
     turned = [corner(turn_deg)] if abs(turn_deg) > 1 else []

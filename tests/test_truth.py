@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
 from footfall.pdr.strapdown import integrate
-from footfall.simulate.truth import GRAVITY, at_rest, divisor, heading_of, imu_truth, runs
+from footfall.simulate.truth import at_rest, divisor, imu_truth, runs
 
 STEP = 0.001
 

@@ -6,12 +6,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from footfall.conventions import GRAVITY
 from footfall.models.body import N_SERVOS, SENSOR_TOUCH, build_body
 from footfall.models.policy import load_policy, stock_policy
 from footfall.models.subject import Subject
 from footfall.simulate.feedback import GAIN_START, Balance, Gains, feedback, mirror_where
 from footfall.simulate.variability import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD, Variability
-from footfall.simulate.walkers import GRAVITY, N_ACTION, N_OBSERVATION, Walkers
+from footfall.simulate.walkers import N_ACTION, N_OBSERVATION, Walkers
 
 BALANCE_FIELDS = tuple(Balance.__dataclass_fields__)
 
@@ -36,7 +37,8 @@ def walkers(n: int = 1, timestep: float = 0.001, variability: float = 0.0) -> Wa
 
 
 def test_nothing_but_gravity_contact_and_joint_torques_acts() -> None:
-    """At every physics step: no applied force, no constraint but contacts and joint stops, and momentum agrees.
+    """At every physics step: no applied force, no constraint but contacts and joint stops, and
+    momentum agrees.
 
     The change of the whole body's momentum must be what gravity and the ground's contact forces give.
     """
@@ -67,7 +69,8 @@ def test_nothing_but_gravity_contact_and_joint_torques_acts() -> None:
             mujoco.mj_forward(model, data)
             mujoco.mj_subtreeVel(model, data)
             change = data.subtree_linvel[0] * mass - before
-            expected = (ground + [0, 0, -mass * 9.81]) * model.opt.timestep
+            weight = np.array([0, 0, -mass * GRAVITY])
+            expected = (ground + weight) * model.opt.timestep
             assert np.linalg.norm(change - expected) < 0.02
         np.testing.assert_allclose(data.qpos, trace.qpos[0, -1], atol=1e-9)
 
@@ -94,7 +97,9 @@ def test_without_a_policy_it_falls_and_says_so() -> None:
 
 
 def test_mirrored_walkers_see_and_do_the_same() -> None:
-    """A walker in left stance that mirrors one in right stance has the same observation and stays its mirror."""
+    """A walker in left stance that mirrors one in right stance has the same observation
+    and stays its mirror.
+    """
     group = walkers(2)
     group.place(
         np.ones(2, dtype=bool),
@@ -121,7 +126,7 @@ def test_a_walker_does_not_depend_on_its_neighbours() -> None:
     np.testing.assert_allclose(one.qpos[0], three.qpos[1], atol=1e-9)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(st.lists(st.floats(-1, 1), min_size=N_SERVOS, max_size=N_SERVOS), st.booleans())
 def test_mirroring_twice_is_nothing(values: list[float], left: bool) -> None:
     row = np.array([values])
@@ -129,7 +134,7 @@ def test_mirroring_twice_is_nothing(values: list[float], left: bool) -> None:
     np.testing.assert_array_equal(twice, row)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(st.lists(st.floats(-1, 1), min_size=len(BALANCE_FIELDS), max_size=len(BALANCE_FIELDS)))
 def test_feedback_is_linear_in_its_gains(values: list[float]) -> None:
     balance = Balance(*(np.array([value]) for value in values))

@@ -11,12 +11,12 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, Field, create_model
 
+from footfall.conventions import GRAVITY
 from footfall.errors import InputError
 from footfall.toml import Strict, read_toml
 
 SHEETS = Path(__file__).resolve().parent / "sheets"
 
-G = 9.80665  # m/s2
 DEG = math.pi / 180
 HOUR = 3600.0
 
@@ -100,24 +100,24 @@ GYRO_KEYS = {
     "turn_on_sigma_deg_s": ("turn_on_sigma", DEG),
     "scale_sigma": ("scale_sigma", 1.0),
     "misalignment_sigma_deg": ("misalignment_sigma", DEG),
-    "g_sensitivity_sigma_deg_s_g": ("g_sigma", DEG / G),
-    "g2_sigma_deg_s_g2": ("g2_sigma", DEG / G**2),
+    "g_sensitivity_sigma_deg_s_g": ("g_sigma", DEG / GRAVITY),
+    "g2_sigma_deg_s_g2": ("g2_sigma", DEG / GRAVITY**2),
     "temperature_sigma_deg_s_k": ("temperature_sigma", DEG),
     "temperature2_sigma_deg_s_k2": ("temperature2_sigma", DEG),
 }
 ACCEL_KEYS = {
-    "range_g": ("range", G),
+    "range_g": ("range", GRAVITY),
     "bandwidth_hz": ("bandwidth", 1.0),
-    "resolution_mg": ("resolution", 1e-3 * G),
-    "noise_density_ug_rt_hz": ("white", 1e-6 * G),
-    "flicker_ug": ("flicker", 1e-6 * G),
-    "random_walk_ug_rt_h": ("random_walk", 1e-6 * G / math.sqrt(HOUR)),
-    "turn_on_sigma_mg": ("turn_on_sigma", 1e-3 * G),
+    "resolution_mg": ("resolution", 1e-3 * GRAVITY),
+    "noise_density_ug_rt_hz": ("white", 1e-6 * GRAVITY),
+    "flicker_ug": ("flicker", 1e-6 * GRAVITY),
+    "random_walk_ug_rt_h": ("random_walk", 1e-6 * GRAVITY / math.sqrt(HOUR)),
+    "turn_on_sigma_mg": ("turn_on_sigma", 1e-3 * GRAVITY),
     "scale_sigma": ("scale_sigma", 1.0),
     "misalignment_sigma_deg": ("misalignment_sigma", DEG),
-    "g2_sigma_ug_g2": ("g2_sigma", 1e-6 / G),
-    "temperature_sigma_mg_k": ("temperature_sigma", 1e-3 * G),
-    "temperature2_sigma_mg_k2": ("temperature2_sigma", 1e-3 * G),
+    "g2_sigma_ug_g2": ("g2_sigma", 1e-6 / GRAVITY),
+    "temperature_sigma_mg_k": ("temperature_sigma", 1e-3 * GRAVITY),
+    "temperature2_sigma_mg_k2": ("temperature2_sigma", 1e-3 * GRAVITY),
 }
 
 _Keys = Mapping[str, tuple[str, float]]
