@@ -22,8 +22,9 @@ from footfall.errors import InputError
 from footfall.simulate.route import Route
 from footfall.toml import Strict
 
-# The walker slows to about 1 m/s in corners, where this radius asks for 0.4 rad/s; it can turn at 0.7.
-MIN_RADIUS_M = 2.5
+MIN_RADIUS_M = 1.5  # of an arc that is walked as such; corners may be sharper
+DEFAULT_CORNER_M = 1.5
+UNROUNDED_M = 0.05  # the radius that stands for none
 MAX_GRADE_PERCENT = 8.0
 MAX_LENGTH_M = 50_000.0
 SPACING_M = 0.1
@@ -76,7 +77,7 @@ class Corner(Element):
 
     kind: Literal["corner"] = "corner"
     turn_deg: float = Field(gt=-180, lt=180)
-    radius_m: Positive = MIN_RADIUS_M
+    radius_m: float = Field(DEFAULT_CORNER_M, ge=0)
 
     @model_validator(mode="after")
     def _turns(self) -> Corner:
@@ -90,9 +91,14 @@ class Corner(Element):
         return math.radians(self.turn_deg)
 
     @property
+    def radius(self) -> float:
+        """Radius of the line (m): a corner that is not rounded is as good as one of 5 cm."""
+        return max(self.radius_m, UNROUNDED_M)
+
+    @property
     def tangent(self) -> float:
         """From the vertex to either end of the corner's arc (m)."""
-        return self.radius_m * math.tan(abs(self.turn) / 2)
+        return self.radius * math.tan(abs(self.turn) / 2)
 
 
 class PathSpec(Strict):
@@ -189,10 +195,10 @@ def lay_out(spec: PathSpec, min_radius_m: float = MIN_RADIUS_M) -> Pieces:
     elements = spec.elements
     trims = np.zeros(len(elements))
     for i, element in enumerate(elements):
-        if not isinstance(element, Straight) and element.radius_m < min_radius_m:
+        if isinstance(element, Arc) and element.radius_m < min_radius_m:
             raise InputError(
                 f"path.elements.{i}.radius_m = {element.radius_m:g}: "
-                f"the walker cannot turn on less than {min_radius_m:g} m"
+                f"the walker cannot walk an arc of less than {min_radius_m:g} m (a corner may be sharper)"
             )
         if isinstance(element, Corner):
             for neighbour in (i - 1, i + 1):
@@ -212,8 +218,9 @@ def lay_out(spec: PathSpec, min_radius_m: float = MIN_RADIUS_M) -> Pieces:
             length.append(element.length_m - trims[i])
             curvature.append(0.0)
         else:
-            length.append(abs(element.turn) * element.radius_m)
-            curvature.append(math.copysign(1 / element.radius_m, element.turn))
+            radius = element.radius if isinstance(element, Corner) else element.radius_m
+            length.append(abs(element.turn) * radius)
+            curvature.append(math.copysign(1 / radius, element.turn))
     total = sum(length)
     if total > MAX_LENGTH_M:
         raise InputError(f"path.elements: {total:g} m in all, expected {MAX_LENGTH_M:g} m at most")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path as File
 from typing import Annotated
 
@@ -17,6 +18,7 @@ from footfall.models.subject import SUBJECTS, Subject
 from footfall.scenarios.path import Path, PathSpec, build_path
 from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height
 from footfall.simulate.journey import PHYSICS_STEP, Plan
+from footfall.simulate.steer import Stop
 from footfall.simulate.truth import divisor
 from footfall.toml import Strict, read_toml
 
@@ -29,8 +31,14 @@ class SubjectTable(Strict):
     """A subject of the scenario's own; `Subject` says which bodies can walk."""
 
     name: Annotated[str, Field(min_length=1)]
-    height_m: float = SUBJECTS["reference"].height_m
-    mass_kg: float = SUBJECTS["reference"].mass_kg
+    height_m: float = Subject.height_m
+    mass_kg: float = Subject.mass_kg
+    cadence: float = Subject.cadence
+    step_width_m: float = Subject.step_width_m
+    toe_out_deg: float = Subject.toe_out_deg
+    asymmetry: float = Subject.asymmetry
+    friction: float = Subject.friction
+    sole_time_s: float = Subject.sole_time_s
 
 
 # Told apart by hand, so that an error speaks of the one that was meant.
@@ -43,11 +51,18 @@ SubjectEntry = Annotated[
 class GaitTable(Strict):
     """How the path is walked. `variability` 1 is that of people, 0 a metronome's."""
 
-    pace_m_s: float = Field(ge=1.0, le=1.5)
+    pace_m_s: float = Field(ge=0.7, le=1.7)
     variability: float = Field(1.0, ge=0, le=1.5)
     action_noise: float = Field(0.0, ge=0, le=0.3)
     wander_m: float = Field(0.0, ge=0, le=0.5)
     wander_time_s: float = Field(4.0, ge=0.5, le=60)
+
+
+class StopTable(Strict):
+    """A pause on the way."""
+
+    at_m: float = Field(gt=0)
+    for_s: float = Field(gt=0, le=3600)
 
 
 class TemperatureTable(Strict):
@@ -87,6 +102,7 @@ class ScenarioFile(Strict):
     subjects: Annotated[tuple[SubjectEntry, ...], Field(strict=False, min_length=1)]
     path: PathSpec
     gait: GaitTable
+    stops: Annotated[tuple[StopTable, ...], Field(strict=False)] = ()
     temperature: TemperatureTable
     sensor: SensorTable
     seeds: SeedTable
@@ -104,6 +120,7 @@ class Scenario:
     path : where to walk
     cell : m, of the terrain's grid
     subjects : used in turn from walk to walk
+    stops : pauses, in walking order
     pace : m/s, asked of the walker on straights
     variability : of the gait, 1 = that of people; action_noise : SD of the noise on the walker's actions
     wander, wander_time : m and s, slow lateral wander of the steering's aim
@@ -121,6 +138,7 @@ class Scenario:
     path: Path
     cell: float
     subjects: tuple[Subject, ...]
+    stops: tuple[Stop, ...]
     pace: float
     variability: float
     action_noise: float
@@ -153,6 +171,7 @@ class Scenario:
             mount=MOUNTS[self.mount],
             ground=self.terrain,
             pace=self.pace,
+            stops=self.stops,
             variability=self.variability,
             action_noise=self.action_noise,
             wander=self.wander,
@@ -206,6 +225,7 @@ def _scenario(file: File, content: ScenarioFile) -> Scenario:
         path=path,
         cell=content.terrain.cell_m,
         subjects=tuple(_subject(i, entry) for i, entry in enumerate(content.subjects)),
+        stops=_stops(content.stops, path.route.length),
         pace=gait.pace_m_s,
         variability=gait.variability,
         action_noise=gait.action_noise,
@@ -224,9 +244,22 @@ def _scenario(file: File, content: ScenarioFile) -> Scenario:
     )
 
 
+def _stops(tables: tuple[StopTable, ...], length: float) -> tuple[Stop, ...]:
+    """In walking order; 3 m apart and from the ends, or there is no walking between them."""
+    at = [0.0, *(table.at_m for table in tables), length]
+    for i, (before, after) in enumerate(pairwise(at)):
+        if after - before < 3.0:
+            key, value = (f"stops.{i}.at_m", after) if i < len(tables) else (f"stops.{i - 1}.at_m", before)
+            raise InputError(
+                f"{key} = {value:g}: expected at least 3 m beyond the stop (or the start) before it and "
+                f"before the path's end at {length:g} m"
+            )
+    return tuple(Stop(table.at_m, table.for_s) for table in tables)
+
+
 def _subject(i: int, entry: str | SubjectTable) -> Subject:
     if isinstance(entry, SubjectTable):
-        return Subject(entry.name, height_m=entry.height_m, mass_kg=entry.mass_kg)
+        return Subject(**entry.model_dump())
     if entry not in SUBJECTS:
         raise InputError(f"subjects.{i} = {entry!r}: expected one of {', '.join(SUBJECTS)}, or a table")
     return SUBJECTS[entry]

@@ -20,8 +20,8 @@ import torch
 
 from footfall.simulate.env import Difficulty, Task, WalkVectorEnv, draw_build
 from footfall.simulate.feedback import GAIN_SCALE, GAIN_START
-from footfall.simulate.ppo import HORIZON, Learner, Schedule
 from footfall.simulate.observation import N_OBSERVATION
+from footfall.simulate.ppo import HORIZON, Learner, Schedule
 from footfall.simulate.walkers import CONTROL_INTERVAL, N_ACTION
 from footfall.tables import replacing
 

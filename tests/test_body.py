@@ -9,19 +9,35 @@ from hypothesis import strategies as st
 from footfall.errors import InputError
 from footfall.models.body import JOINTS, MOUNTS, SERVO_JOINT, SERVOS, Ground, Mount, build_body
 from footfall.models.gait import TABLE, reference_angles
-from footfall.models.subject import SUBJECTS, Subject
+from footfall.models.subject import Build, Subject, draw_subject
 
 STEP = 0.001
 
 
-@pytest.mark.parametrize("subject", SUBJECTS.values(), ids=SUBJECTS)
-def test_mass_and_stature_follow_the_subject(subject: Subject) -> None:
-    model = build_body(subject, timestep=STEP)
-    assert sum(model.body_mass) == pytest.approx(subject.mass_kg, rel=0.01)
+def test_the_reference_body_has_the_reference_mass_and_legs() -> None:
+    model = build_body(Build(), timestep=STEP)
+    assert sum(model.body_mass) == pytest.approx(75.0, rel=0.01)
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     leg = data.body("pelvis").xpos[2] - data.body("foot_r").xpos[2]
-    assert leg == pytest.approx((0.245 + 0.246) * subject.height_m + 0.06 * subject.scale, rel=1e-9)
+    assert leg == pytest.approx((0.245 + 0.246) * 1.75 + 0.06, rel=1e-9)
+
+
+def test_a_heavier_person_of_the_same_height_has_a_heavier_trunk() -> None:
+    light, heavy = Subject("a", mass_kg=60.0), Subject("b", mass_kg=95.0)
+    assert heavy.build.trunk_mass > 1 > light.build.trunk_mass
+    # A taller person of the same body-mass index is the same body, enlarged.
+    tall = Subject("c", height_m=1.90, mass_kg=75.0 * (1.90 / 1.75) ** 2)
+    assert tall.build.trunk_mass == pytest.approx(1.0)
+    assert tall.time_scale == pytest.approx(np.sqrt(1.90 / 1.75))
+
+
+@given(st.integers(0, 10_000))
+def test_drawn_people_can_all_walk(seed: int) -> None:
+    subject = draw_subject(np.random.default_rng(seed))
+    assert 1.50 <= subject.height_m <= 1.95
+    assert 50 <= subject.mass_kg <= 100
+    assert subject == draw_subject(np.random.default_rng(seed))
 
 
 @settings(max_examples=30)
@@ -30,7 +46,7 @@ def test_the_body_is_its_own_mirror_image(angles: list[float]) -> None:
     """Mirrored joint angles put each foot where the mirror image of the other one is."""
     from footfall.simulate.feedback import JOINT_MIRROR, JOINT_SIGN
 
-    model = build_body(Subject(), timestep=STEP)
+    model = build_body(Build(), timestep=STEP)
     data = mujoco.MjData(model)
     q = np.array(angles)
     feet = []
@@ -47,7 +63,7 @@ def test_the_body_is_its_own_mirror_image(angles: list[float]) -> None:
 
 
 def test_servos_name_their_joints_in_order() -> None:
-    model = build_body(Subject(), timestep=STEP)
+    model = build_body(Build(), timestep=STEP)
     assert [model.actuator(i).name for i in range(model.nu)] == list(SERVOS)
     assert [model.joint(i + 1).name for i in range(model.njnt - 1)] == list(JOINTS)
     for i, name in enumerate(SERVOS):
@@ -55,7 +71,7 @@ def test_servos_name_their_joints_in_order() -> None:
 
 
 def test_servo_torques_are_limited() -> None:
-    model = build_body(Subject(), timestep=STEP)
+    model = build_body(Build(), timestep=STEP)
     data = mujoco.MjData(model)
     data.ctrl[:] = 100.0  # an absurd target
     mujoco.mj_forward(model, data)
@@ -65,8 +81,8 @@ def test_servo_torques_are_limited() -> None:
 def test_the_reference_gait_is_symmetric_and_periodic() -> None:
     """The left leg does what the right leg did half a stride before."""
     phase = np.linspace(0, 0.999, 200)
-    here = reference_angles(phase, np.ones(200))
-    there = reference_angles((phase + 0.5) % 1, np.ones(200))
+    here = reference_angles(phase, np.full(200, 1.25))
+    there = reference_angles((phase + 0.5) % 1, np.full(200, 1.25))
     np.testing.assert_allclose(here[:, 3:9], there[:, 9:15], atol=1e-12)
     assert np.abs(np.diff(np.vstack([TABLE, TABLE[:1]]), axis=0)).max() < np.radians(1.2)
 
@@ -74,7 +90,7 @@ def test_the_reference_gait_is_symmetric_and_periodic() -> None:
 def test_the_reference_foot_is_flat_in_mid_stance() -> None:
     """From 10 to 35 % of the stride the sole stays within 4 deg of level."""
     phase = np.linspace(0.12, 0.35, 30)
-    angles = reference_angles(phase, np.ones(30))
+    angles = reference_angles(phase, np.full(30, 1.25))
     foot_pitch = angles[:, 3] - angles[:, 6] + angles[:, 7]
     assert np.degrees(np.abs(foot_pitch)).max() < 4
 
@@ -83,7 +99,7 @@ def test_a_heightfield_holds_a_ball_at_its_height() -> None:
     """The ground under the feet is where the grid says, also off its nodes."""
     x = np.arange(0, 20.01, 0.5)
     heights = np.tile(0.05 * x, (41, 1)).astype(np.float32)
-    model = build_body(Subject(), timestep=STEP, ground=Ground(-5.0, -10.0, 0.5, heights))
+    model = build_body(Build(), timestep=STEP, ground=Ground(-5.0, -10.0, 0.5, heights))
     data = mujoco.MjData(model)
     geom = np.zeros(1, dtype=np.int32)
     for at in (-3.2, 0.0, 4.71):
@@ -96,7 +112,7 @@ def test_a_heightfield_holds_a_ball_at_its_height() -> None:
 @pytest.mark.parametrize("name", MOUNTS)
 def test_mounts_give_imu_sensors_on_their_foot(name: str) -> None:
     mount = MOUNTS[name]
-    model = build_body(Subject(), timestep=STEP, mount=mount)
+    model = build_body(Build(), timestep=STEP, mount=mount)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     foot = data.body(f"foot_{mount.foot[0]}").xpos

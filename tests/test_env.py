@@ -64,7 +64,7 @@ def test_the_spec_pickles_and_closing_twice_is_fine(env: gym.Env) -> None:
 def test_gymnasium_makes_vector_environments() -> None:
     envs = gym.make_vec("footfall/Walk-v0", num_envs=3, vectorization_mode="sync")
     observation, _ = envs.reset(seed=1)
-    assert observation.shape == (3, 80)
+    assert observation.shape == (3, 82)
     envs.step(envs.action_space.sample())
     envs.close()
 
@@ -77,7 +77,7 @@ def test_the_threaded_vector_environment_resets_what_fell() -> None:
     ended = 0
     for _ in range(120):
         observation, reward, terminated, truncated, info = envs.step(np.full((6, 15), 0.5))
-        assert observation.shape == (6, 80)
+        assert observation.shape == (6, 82)
         assert np.isfinite(reward).all()
         done = terminated | truncated
         ended += done.sum()

@@ -179,8 +179,8 @@ def test_a_level_path_has_no_height_at_all():
 @pytest.mark.parametrize(
     ("elements", "message"),
     [
-        ([arc(2.4, 90)], r"path.elements.0.radius_m = 2.4: .* less than 2.5 m"),
-        ([straight(50), corner(90, 1.0), straight(50)], r"path.elements.1.radius_m = 1: .* less than 2.5 m"),
+        ([arc(1.4, 90)], r"path.elements.0.radius_m = 1.4: .* less than 1.5 m"),
+        ([straight(50), arc(1.0, 90), straight(50)], r"path.elements.1.radius_m = 1: .* less than 1.5 m"),
         (
             [straight(50), corner(90), straight(4.9), corner(90), straight(50)],
             r"path.elements.2.length_m = 4.9: too short for its corners, which take 5.000 m",
@@ -197,10 +197,18 @@ def test_what_cannot_be_walked_is_refused(elements, message):
 
 
 def test_the_walkers_minimum_radius_is_an_argument():
-    spec = PathSpec(elements=[arc(2.0, 90)])
-    assert build_path(spec, min_radius_m=1.5).route.length == pytest.approx(math.pi)
-    with pytest.raises(InputError, match=r"radius_m = 2: .* less than 2.5 m"):
+    spec = PathSpec(elements=[arc(1.0, 90)])
+    assert build_path(spec, min_radius_m=0.5).route.length == pytest.approx(math.pi / 2)
+    with pytest.raises(InputError, match=r"radius_m = 1: .* less than 1.5 m"):
         build_path(spec)
+
+
+def test_a_corner_need_not_be_rounded():
+    path = build(straight(10.0), corner(90, 0.0), straight(10.0))
+    off = np.minimum(np.hypot(path.route.y, 0 * path.route.y), np.hypot(path.route.x - 10, 0 * path.route.x))
+    assert off.max() < 0.03
+    assert path.route.length == pytest.approx(20.0, abs=0.05)
+    assert path.route.heading[-1] == pytest.approx(math.pi / 2)
 
 
 @pytest.mark.parametrize(

@@ -144,7 +144,7 @@ def own(tmp_path):
 def test_a_users_file_works_as_a_stock_name_does(own):
     scenario = load_scenario(own())
     assert (scenario.name, scenario.description) == ("mine", "mine")
-    assert scenario.path.route.length == pytest.approx(75 + 2.5 * math.pi / 2)
+    assert scenario.path.route.length == pytest.approx(77 + 1.5 * math.pi / 2)
     assert [subject.name for subject in scenario.subjects] == ["taller", "me"]
     assert scenario.subjects[1].mass_kg == 80
     assert [scenario.plan(walk).seed for walk in range(scenario.walks)] == [40, 41, 42]
@@ -175,13 +175,13 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
         ("walks = 3", "wlaks = 3", r"unknown key 'seeds.wlaks' = 3"),
         ("[gait]", "[gate]", r"key 'gait' is missing|unknown key 'gate'"),
         ('description = "mine"', "", r"key 'description' is missing"),
-        ("pace_m_s = 1.2", "pace_m_s = 1.6", r"gait.pace_m_s = 1.6: .* less than or equal to 1.5"),
+        ("pace_m_s = 1.2", "pace_m_s = 1.8", r"gait.pace_m_s = 1.8: .* less than or equal to 1.7"),
         ("pace_m_s = 1.2", "pace_m_s = nan", r"gait.pace_m_s = nan: .* finite"),
         ("pace_m_s = 1.2", 'pace_m_s = "1.2"', r"gait.pace_m_s = '1.2': .* valid number"),
         ("length_m = 50 ", "length_m = -50 ", r"path.elements.0\S* = -50(.0)?: .* greater than 0"),
         ("turn_deg = 90.0", "turn_deg = inf", r"path.elements.1\S*turn_deg = inf: .* finite"),
-        ("turn_deg = 90.0", "turn_deg = 90.0, radius_m = 1.5", r"path.elements.1.radius_m = 1.5: .* 2.5 m"),
-        ("length_m = 30.0", "length_m = 2.0", r"path.elements.2.length_m = 2: too short for its corners"),
+        ("turn_deg = 90.0", "turn_deg = 90.0, radius_m = -1.0", r"path.elements.1.corner.radius_m = -1.0: .* 0"),
+        ("length_m = 30.0", "length_m = 1.0", r"path.elements.2.length_m = 1: too short for its corners"),
         ("turn_deg = 90.0", "turn_deg = 90.0, radius = 3", r"unknown key 'path.elements.1\S*radius' = 3"),
         ("[gait]", "closed = true\n[gait]", r"path.closed = true: .* \(50.000, 30.000\) m, 58.310 m from"),
         ('["taller",', '["giant",', r"subjects.0 = 'giant': expected one of reference, taller, shorter"),

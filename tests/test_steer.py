@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from footfall.simulate.route import Route
-from footfall.simulate.steer import CORNER_SPEED, STRAY_LIMIT, TURN_LIMIT, Pursuit, StrayError
-from footfall.simulate.walkers import CONTROL_INTERVAL
+from footfall.simulate.steer import SLOWING, STRAY_LIMIT, TURN_LIMIT, Pursuit, Stop, StrayError, speed_limits
+
+DT = 0.03
 
 
 def route_of(curvature: np.ndarray, step: float = 0.05) -> Route:
@@ -17,19 +18,27 @@ def route_of(curvature: np.ndarray, step: float = 0.05) -> Route:
     return Route(s, x, y, np.zeros_like(s), heading, curvature)
 
 
-def follow(route: Route, wander: float = 0.0, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """A point that walks at the commanded speed and turns at the commanded rate: positions and turn rates."""
-    pursuit = Pursuit(route, 1.3, wander, 4.0, np.random.default_rng(seed))
-    x = y = heading = 0.0
-    points, turns = [], []
-    while not pursuit.finished:
-        speed, turn = pursuit.command(x, y, heading)
-        heading += turn * CONTROL_INTERVAL
-        x += speed * np.cos(heading) * CONTROL_INTERVAL
-        y += speed * np.sin(heading) * CONTROL_INTERVAL
+def pursuit_of(route: Route, *stops: Stop, wander: float = 0.0, seed: int = 0) -> Pursuit:
+    end = Stop(route.length, 0.0)
+    rng = np.random.default_rng(seed)
+    return Pursuit(route, 1.3, (*stops, end), wander=wander, wander_time=4.0, dt=DT, rng=rng)
+
+
+def follow(pursuit: Pursuit) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A point that walks and turns at the commanded rates: positions, turn rates, speeds."""
+    x = y = heading = speed = 0.0
+    points, turns, speeds = [], [], []
+    for _ in range(100_000):
+        speed, turn = pursuit.command(x, y, heading, speed, speed == 0.0)
+        if pursuit.finished:
+            break
+        heading += turn * DT
+        x += speed * np.cos(heading) * DT
+        y += speed * np.sin(heading) * DT
         points.append((x, y))
         turns.append(turn)
-    return np.array(points), np.array(turns)
+        speeds.append(speed)
+    return np.array(points), np.array(turns), np.array(speeds)
 
 
 def off_route(points: np.ndarray, route: Route) -> np.ndarray:
@@ -37,46 +46,73 @@ def off_route(points: np.ndarray, route: Route) -> np.ndarray:
     return np.array([np.linalg.norm(line - point, axis=1).min() for point in points])
 
 
-@pytest.mark.parametrize("radius", [2.5, -10.0, 60.0])
+@pytest.mark.parametrize("radius", [1.5, 2.5, -10.0, 60.0])
 def test_it_follows_straights_and_bends(radius: float) -> None:
     bend = np.full(int(abs(radius) * np.pi / 2 / 0.05), 1 / radius)
     route = route_of(np.concatenate([np.zeros(200), bend, np.zeros(200)]))
-    points, turns = follow(route)
+    points, turns, _ = follow(pursuit_of(route))
     assert off_route(points, route).max() < 0.5
     assert np.abs(turns).max() <= TURN_LIMIT
+    assert np.linalg.norm(points[-1] - [route.x[-1], route.y[-1]]) < 0.5
 
 
-def test_it_slows_down_before_a_sharp_corner_and_not_for_a_wide_bend() -> None:
-    corner = route_of(np.concatenate([np.zeros(100), np.full(78, 0.4), np.zeros(100)]))
-    pursuit = Pursuit(corner, 1.4, 0.0, 4.0, np.random.default_rng(0))
-    assert pursuit.command(0.0, 0.0, 0.0)[0] == 1.4
-    assert [pursuit.command(x, 0.0, 0.0)[0] for x in (1.5, 3.0, 4.0)][-1] == CORNER_SPEED
-    bend = Pursuit(route_of(np.full(400, 0.05)), 1.4, 0.0, 4.0, np.random.default_rng(0))
-    assert bend.command(0.0, 0.0, 0.0)[0] == 1.4
+def test_an_unrounded_corner_is_taken_slowly_and_closely() -> None:
+    jump = np.zeros(401)
+    route = route_of(jump)
+    heading = np.where(np.arange(401) < 200, 0.0, np.pi / 2)
+    x = np.minimum(route.s, 10.0)
+    y = np.maximum(route.s - 10.0, 0.0)
+    corner = Route(route.s, x, y, route.z, heading, jump)
+    points, _, speeds = follow(pursuit_of(corner))
+    assert off_route(points, corner).max() < 0.5
+    before = (points[:, 0] > 9.3) & (points[:, 1] < 0.2)
+    assert before.any()
+    assert speeds[before].max() < 1.1
+    assert speeds.max() == 1.3
+
+
+def test_speed_limits_brake_in_time_and_never_exceed_the_pace() -> None:
+    corner = route_of(np.concatenate([np.zeros(400), np.full(78, 0.4), np.zeros(400)]))
+    limit = speed_limits(corner, 1.4)
+    assert limit.max() == 1.4
+    assert limit[400:478].max() <= 1.0
+    slowing = np.diff(limit[:401] ** 2) / np.diff(corner.s[:401]) / 2
+    assert slowing.min() > -SLOWING - 1e-9
+    assert speed_limits(route_of(np.full(400, 0.05)), 1.4).min() == 1.4
+
+
+def test_it_stands_where_and_as_long_as_told() -> None:
+    route = route_of(np.zeros(800))
+    points, _, speeds = follow(pursuit_of(route, Stop(0.0, 3.0), Stop(20.0, 5.0)))
+    still = speeds == 0
+    assert still[: int(3.0 / DT) - 1].all()
+    on_the_way = still & (points[:, 0] > 1) & (points[:, 0] < 39)
+    assert on_the_way.sum() * DT == pytest.approx(5.0, abs=0.1)
+    np.testing.assert_allclose(points[on_the_way, 0], 20.0, atol=0.3)
 
 
 def test_wander_has_the_asked_amplitude() -> None:
     """The aim wanders with the asked spread; the walked line follows it, smoothed."""
     route = route_of(np.zeros(40000))
-    straight, _ = follow(route)
+    straight, _, _ = follow(pursuit_of(route))
     assert np.abs(straight[:, 1]).max() < 1e-9
-    points, _ = follow(route, wander=0.2, seed=3)
+    points, _, _ = follow(pursuit_of(route, wander=0.2, seed=3))
     assert 0.08 < points[:, 1].std() < 0.25
-    again, _ = follow(route, wander=0.2, seed=3)
+    again, _, _ = follow(pursuit_of(route, wander=0.2, seed=3))
     np.testing.assert_array_equal(points, again)
 
 
 def test_straying_is_an_error() -> None:
-    pursuit = Pursuit(route_of(np.zeros(400)), 1.3, 0.0, 4.0, np.random.default_rng(0))
-    pursuit.command(0.5, STRAY_LIMIT - 0.01, 0.0)
+    pursuit = pursuit_of(route_of(np.zeros(400)))
+    pursuit.command(0.5, STRAY_LIMIT - 0.01, 0.0, 1.3, False)
     with pytest.raises(StrayError, match=r"strayed 2\.0 m off its path"):
-        pursuit.command(0.6, 2.0, 0.0)
+        pursuit.command(0.6, 2.0, 0.0, 1.3, False)
 
 
 def test_progress_never_jumps_to_a_later_pass() -> None:
     """A route that crosses itself is followed in order."""
     loop = np.concatenate([np.zeros(200), np.full(629, 0.2), np.zeros(200)])  # a full circle of 5 m radius
     route = route_of(loop)
-    points, _ = follow(route)
+    points, _, _ = follow(pursuit_of(route))
     length = np.hypot(*np.diff(points, axis=0).T).sum()
     assert length == pytest.approx(route.length, rel=0.1)

@@ -9,7 +9,7 @@ from paths import arc, build, corner, straight
 
 from footfall.errors import InputError
 from footfall.models.body import build_body
-from footfall.models.subject import Subject
+from footfall.models.subject import Build
 from footfall.scenarios.scenario import load_scenario
 from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height
 
@@ -85,7 +85,7 @@ def test_open_paths_have_ground_beyond_their_ends():
 
 def ray_heights(terrain, x, y):
     """The ground's height as MuJoCo has it, by rays from above."""
-    model = build_body(Subject(), timestep=1e-3, ground=terrain)
+    model = build_body(Build(), timestep=1e-3, ground=terrain)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     above = 100.0

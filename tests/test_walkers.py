@@ -7,33 +7,45 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from footfall.conventions import GRAVITY
-from footfall.models.body import N_SERVOS, SENSOR_TOUCH, build_body
+from footfall.models.body import (
+    N_SERVOS,
+    SENSOR_FOOT_POSITION,
+    SENSOR_FOOT_RATE,
+    SENSOR_TOUCH,
+    build_body,
+)
 from footfall.models.policy import load_policy, stock_policy
-from footfall.models.subject import Subject
+from footfall.models.subject import Build, Habits
 from footfall.simulate.feedback import GAIN_START, Balance, Gains, feedback, mirror_where
+from footfall.simulate.journey import NOSLIP_ITERATIONS
+from footfall.simulate.observation import N_OBSERVATION
 from footfall.simulate.variability import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD, Variability
-from footfall.simulate.walkers import N_ACTION, N_OBSERVATION, Walkers
+from footfall.simulate.walkers import N_ACTION, Walkers
 
 BALANCE_FIELDS = tuple(Balance.__dataclass_fields__)
 
 
 def walkers(n: int = 1, timestep: float = 0.001, variability: float = 0.0) -> Walkers:
-    model = build_body(Subject(), timestep=timestep)
-    group = Walkers(
-        [model] * n,
-        [Subject()] * n,
-        stock_policy().feedback_gains,
-        variability=np.full(n, variability),
-        rng=np.random.default_rng(0),
-    )
+    model = build_body(Build(), timestep=timestep)
+    group = Walkers([model] * n, stock_policy().feedback_gains, rng=np.random.default_rng(0))
+    place(group, variability=variability)
+    return group
+
+
+def place(
+    group: Walkers, phase: float | list[float] = 0.25, variability: float = 0.0, standing: bool = False
+) -> None:
+    n = group.n
     group.place(
         np.ones(n, dtype=bool),
-        phase=np.full(n, 0.25),
+        phase=np.full(n, phase),
         speed=np.full(n, 1.25),
         heading=np.zeros(n),
         position=np.zeros((n, 3)),
+        standing=np.full(n, standing),
+        variability=np.full(n, variability),
+        habits=[Habits()] * n,
     )
-    return group
 
 
 def test_nothing_but_gravity_contact_and_joint_torques_acts() -> None:
@@ -101,13 +113,7 @@ def test_mirrored_walkers_see_and_do_the_same() -> None:
     and stays its mirror.
     """
     group = walkers(2)
-    group.place(
-        np.ones(2, dtype=bool),
-        phase=np.array([0.2, 0.7]),
-        speed=np.full(2, 1.2),
-        heading=np.zeros(2),
-        position=np.zeros((2, 3)),
-    )
+    place(group, phase=[0.2, 0.7])
     group.turn[:] = group.turn_goal[:] = [0.3, -0.3]
     policy = stock_policy()
     for _ in range(20):
@@ -144,17 +150,74 @@ def test_feedback_is_linear_in_its_gains(values: list[float]) -> None:
 
 
 def test_variability_has_the_stated_spread() -> None:
-    """Targets drawn over many steps scatter as people's do; level 0 is a metronome."""
+    """Targets drawn over many steps scatter as people's do about their habits; level 0 is a metronome."""
     n = 4000
-    lively = Variability(np.ones(n))
-    still = Variability(np.zeros(n))
-    rng = np.random.default_rng(1)
+    everyone, rng = np.ones(n, dtype=bool), np.random.default_rng(1)
+    habits = Habits(cadence=1.03, step_width=0.01, toe_out=0.1, asymmetry=0.0)
+    lively, still = Variability(n), Variability(n)
+    lively.place(everyone, np.ones(n), [habits] * n)
+    still.place(everyone, np.zeros(n), [habits] * n)
     for half in np.arange(40) % 2:
         for group in (lively, still):
-            group.advance(np.ones(n, dtype=bool), np.full(n, half), 0.03, rng)
+            group.advance(everyone, np.full(n, half), np.full(n, 0.03), rng)
     assert lively.target[:, 0].std() == pytest.approx(np.hypot(CADENCE_SD, CADENCE_SLOW_SD), rel=0.05)
+    assert lively.target[:, 0].mean() == pytest.approx(0.03, abs=0.003)
     assert lively.target[:, 3].std() == pytest.approx(TOE_OUT_SD, rel=0.05)
-    assert not still.value.any()
+    np.testing.assert_allclose(still.value, np.tile([0.03, 0, 0.01, 0.1, 0.1], (n, 1)), atol=1e-12)
+
+
+def test_asymmetry_makes_one_step_quicker_than_the_other() -> None:
+    one = Variability(1)
+    one.place(np.ones(1, dtype=bool), np.zeros(1), [Habits(asymmetry=0.02)])
+    rng, cadence = np.random.default_rng(0), []
+    for half in (0, 1):
+        one.advance(np.ones(1, dtype=bool), np.array([half]), np.array([0.03]), rng)
+        cadence.append(one.target[0, 0])
+    assert cadence == pytest.approx([0.02, -0.02])
+
+
+@pytest.mark.parametrize("grade", [0.0, 0.05, 0.08])
+def test_standing_stands(grade: float) -> None:
+    """Ten seconds on any slope: no fall, no step, and feet that turn by less than 0.1 deg/s and do not creep."""
+    azimuth = np.linspace(0, 2 * np.pi, 6, endpoint=False)
+    up = np.column_stack([grade * np.cos(azimuth), grade * np.sin(azimuth), np.ones(6)])
+    up /= np.linalg.norm(up, axis=1)[:, None]
+    group, policy = walkers(6), stock_policy()
+    group.models = [build_body(Build(), timestep=0.001) for _ in range(6)]
+    group.up[:] = up
+    for model, direction in zip(group.models, up, strict=True):
+        model.opt.gravity[:] = -GRAVITY * direction
+        model.opt.noslip_iterations = NOSLIP_ITERATIONS
+    place(group, standing=True)
+    for step in range(333):
+        trace = group.step(policy(group.observe()))
+        if step == 150:
+            feet = group.sensor[:, SENSOR_FOOT_POSITION].copy()
+    assert not group.fallen().any()
+    assert (group.gate.value == 0).all()
+    rate = np.degrees(np.abs(trace.sensor[:, :, SENSOR_FOOT_RATE])).max()
+    assert rate < 0.1
+    creep = np.abs(group.sensor[:, SENSOR_FOOT_POSITION] - feet).max() / (182 * 0.03)
+    assert creep < 0.2e-3
+
+
+def test_it_stops_and_goes_again() -> None:
+    """From 1.2 m/s to a stand, and on again, at people's variability."""
+    group, policy = walkers(4, variability=1.0), stock_policy()
+
+    def until(seconds: float) -> None:
+        for _ in range(int(seconds / 0.03)):
+            group.step(policy(group.observe()))
+            assert not group.fallen().any()
+
+    until(4)
+    group.speed_goal[:] = 0.0
+    until(8)
+    assert (group.gate.value == 0).all()
+    assert (np.linalg.norm(group.qvel[:, :2], axis=1) < 0.01).all()
+    group.speed_goal[:] = 1.2
+    until(5)
+    assert (group.mean_velocity[:, 0] > 0.9).all()
 
 
 def test_touch_sensors_carry_the_body() -> None:
@@ -169,7 +232,7 @@ def test_touch_sensors_carry_the_body() -> None:
 
 
 def test_a_control_step_that_is_no_multiple_of_the_physics_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"no multiple of the physics step 0.007"):
+    with pytest.raises(ValueError, match=r"physics steps of 0.007 s are no control interval"):
         walkers(timestep=0.007)
 
 
