@@ -147,10 +147,20 @@ def build_body(
     option.iterations, option.ls_iterations = 4, 6
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_EULERDAMP | mujoco.mjtDisableBit.mjDSBL_ISLAND)
     spec.visual.headlight.ambient = [0.35, 0.35, 0.35]
+    spec.visual.map.shadowclip = 4
 
     _add_ground(spec, build, ground)
     pelvis = spec.worldbody.add_body(name="pelvis", pos=[0, 0, 1])
     pelvis.add_freejoint(name="root")
+    # The sun goes along, so that the shadow's resolution is spent on the walker.
+    pelvis.add_light(
+        name="sun",
+        mode=mujoco.mjtCamLight.mjCAMLIGHT_TRACK,
+        type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
+        pos=[-1.5, -2.0, 4.0],
+        dir=[0.3, 0.4, -0.85],
+        diffuse=[0.6, 0.6, 0.6],
+    )
     _inertial(pelvis, [0, 0, 0.02], 10.65, np.array([0.08, 0.07, 0.09]) * build.trunk_mass, build.trunk_mass)
     _look(pelvis, [0, -0.08, 0], [0, 0.08, 0], 0.09, _TROUSERS)
     for side in "rl":
@@ -224,8 +234,27 @@ def _contact(build: Build) -> dict:
 
 def _add_ground(spec: mujoco.MjSpec, build: Build, ground: Ground | None) -> None:
     world = spec.worldbody
-    world.add_light(pos=[0, 0, 30], dir=[0.2, 0.3, -1], type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL)
-    common = {"name": "ground", "contype": 1, "conaffinity": 0, "rgba": [0.72, 0.74, 0.72, 1]}
+    spec.add_texture(
+        name="sky",
+        type=mujoco.mjtTexture.mjTEXTURE_SKYBOX,
+        builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
+        rgb1=[0.60, 0.74, 0.90],
+        rgb2=[0.93, 0.95, 0.97],
+        width=256,
+        height=256,
+    )
+    spec.add_texture(
+        name="paving",
+        type=mujoco.mjtTexture.mjTEXTURE_2D,
+        builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
+        rgb1=[0.66, 0.68, 0.66],
+        rgb2=[0.62, 0.64, 0.62],
+        width=128,
+        height=128,
+    )
+    paving = spec.add_material(name="paving", texuniform=True, texrepeat=[0.5, 0.5])
+    paving.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "paving"
+    common = {"name": "ground", "contype": 1, "conaffinity": 0, "material": "paving"}
     common |= _contact(build)
     if ground is None:
         world.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], **common)
@@ -298,12 +327,12 @@ def _add_leg(pelvis: mujoco.MjsBody, side: str, build: Build) -> None:
         _look(toe, [0.0, y, 0.004], [0.045, y / 4.5, 0.002], 0.02, _SHOE)
 
     # Boxes round each contact, for the touch sensors.
-    box = mujoco.mjtGeom.mjGEOM_BOX
+    hidden = {"type": mujoco.mjtGeom.mjGEOM_BOX, "group": 4}
     foot.add_site(
-        name=f"heel_{side}", type=box, pos=[-0.045 * length, 0, sole + 0.02], size=[0.04, 0.06, 0.04]
+        name=f"heel_{side}", pos=[-0.045 * length, 0, sole + 0.02], size=[0.04, 0.06, 0.04], **hidden
     )
-    foot.add_site(name=f"ball_{side}", type=box, pos=[ball_x, 0, sole + 0.02], size=[0.03, 0.07, 0.04])
-    toe.add_site(name=f"toe_{side}", type=box, pos=[0.055, 0, 0], size=[0.04, 0.06, 0.04])
+    foot.add_site(name=f"ball_{side}", pos=[ball_x, 0, sole + 0.02], size=[0.03, 0.07, 0.04], **hidden)
+    toe.add_site(name=f"toe_{side}", pos=[0.055, 0, 0], size=[0.04, 0.06, 0.04], **hidden)
 
 
 def _add_torso_looks(torso: mujoco.MjsBody) -> None:

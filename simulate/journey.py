@@ -6,7 +6,7 @@ The physics moves the 1.75 m body (models.subject); what comes out is stretched 
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from importlib.metadata import version
 
@@ -25,13 +25,14 @@ from footfall.simulate.route import Route
 from footfall.simulate.steer import Pursuit, Stop
 from footfall.simulate.truth import at_rest, divisor, imu_truth, runs
 from footfall.simulate.walk import TrueFootfalls, Walk
-from footfall.simulate.walkers import N_ACTION, Walkers
+from footfall.simulate.walkers import N_ACTION, Trace, Walkers
 from footfall.streams import stream
 
 PHYSICS_STEP = 0.001  # s, of the subject's time
 SUBSTEPS = 30  # physics steps of a control step
 NOSLIP_ITERATIONS = 4
 END_STAND_S = 2.0
+_RUN_OUT = 8.0  # m
 _SLOWEST = 0.35  # m/s; a walk that takes longer than this has got stuck
 
 
@@ -101,6 +102,21 @@ def _shrunk(plan: Plan) -> Plan:
     )
 
 
+def _with_run_out(route: Route) -> Route:
+    """The route and some straight, level ground beyond its end: people do not stop on a line."""
+    step = float(route.s[1] - route.s[0])
+    away = np.arange(1, round(_RUN_OUT / step) + 1) * step
+    last, flat = route.heading[-1], np.zeros_like(away)
+    return Route(
+        s=np.concatenate([route.s, route.s[-1] + away]),
+        x=np.concatenate([route.x, route.x[-1] + away * np.cos(last)]),
+        y=np.concatenate([route.y, route.y[-1] + away * np.sin(last)]),
+        z=np.concatenate([route.z, flat + route.z[-1]]),
+        heading=np.concatenate([route.heading, flat + last]),
+        curvature=np.concatenate([route.curvature, flat]),
+    )
+
+
 @dataclass(frozen=True)
 class _Record:
     """The IMU site at every physics step, in the subject's units; contact in body weights."""
@@ -110,15 +126,27 @@ class _Record:
     contact: np.ndarray
 
 
-def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | None) -> _Record:
-    """Stand, walk the route and stand.
+@dataclass(frozen=True)
+class Moment:
+    """The walker after a control step, in its own units: the physics of that step.
+
+    `progress` is where along the route it is, in the subject's metres.
+    """
+
+    walkers: Walkers
+    trace: Trace
+    progress: float
+
+
+def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
+    """Stand, walk the route and stand, one control step at a time.
 
     Raises
     ------
     FallError, StrayError
         The walk did not reach its end.
     """
-    subject, small = plan.subject, _shrunk(plan)
+    subject, small = plan.subject, _shrunk(replace(plan, route=_with_run_out(plan.route)))
     route, step = small.route, PHYSICS_STEP / subject.time_scale
     model = build_body(subject.build, timestep=step, mount=plan.mount, ground=small.ground)
     # A standing foot would creep downhill by millimetres a second without it.
@@ -133,7 +161,7 @@ def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | 
     pursuit = Pursuit(
         route,
         small.pace,
-        (Stop(0.0, small.calibration), *small.stops, Stop(route.length, END_STAND_S)),
+        (Stop(0.0, small.calibration), *small.stops, Stop(plan.route.length / subject.scale, END_STAND_S)),
         wander=small.wander,
         wander_time=small.wander_time,
         dt=SUBSTEPS * step,
@@ -149,10 +177,6 @@ def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | 
         variability=np.array([plan.variability]),
         habits=[subject.habits],
     )
-    weight = float(sum(model.body_mass)) * GRAVITY
-    touch = np.arange(3) + body.SENSOR_TOUCH.start + (0 if plan.mount.foot == "right" else 3)
-    columns = [*range(*body.SENSOR_IMU_POSITION.indices(99)), *range(*body.SENSOR_IMU_QUATERNION.indices(99))]
-    chunks = []
     waiting = small.calibration + END_STAND_S + sum(stop.duration + 10 for stop in small.stops) + 20
     limit = int((route.length / _SLOWEST + waiting) / (SUBSTEPS * step))
     try:
@@ -162,32 +186,40 @@ def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | 
                 walkers.qpos[0, 0], walkers.qpos[0, 1], walkers.heading[0], walkers.speed[0], standing
             )
             if pursuit.finished:
-                break
+                return
             walkers.speed_goal[0], walkers.turn_goal[0] = speed, turn
             action = policy(walkers.observe())
             if plan.action_noise:
                 action = action + plan.action_noise * noise.standard_normal((1, N_ACTION))
-            sensor = walkers.step(action).sensor[0]
-            chunks.append(
-                np.concatenate([sensor[:, columns], sensor[:, touch].sum(axis=1, keepdims=True)], axis=1)
-            )
-            if walkers.fallen()[0]:
-                at, when = pursuit.progress * subject.scale, count * SUBSTEPS * PHYSICS_STEP
-                raise FallError(
-                    f"{plan.name}: the walker fell at {at:.0f} m ({when:.0f} s, subject {subject.name}, "
-                    f"seed {plan.seed}, pace {plan.pace:g} m/s)"
-                )
-            if on_progress is not None and count % 100 == 0:
-                on_progress(pursuit.progress * subject.scale)
-        else:
+            trace = walkers.step(action)
             at = pursuit.progress * subject.scale
-            raise FallError(f"{plan.name}: the walker got stuck at {at:.0f} m (seed {plan.seed})")
+            if walkers.fallen()[0]:
+                raise FallError(
+                    f"{plan.name}: the walker fell at {at:.0f} m ({count * SUBSTEPS * PHYSICS_STEP:.0f} s, "
+                    f"subject {subject.name}, seed {plan.seed}, pace {plan.pace:g} m/s)"
+                )
+            yield Moment(walkers, trace, at)
+        raise FallError(f"{plan.name}: the walker got stuck at {at:.0f} m (seed {plan.seed})")
     finally:
         walkers.close()
+
+
+def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | None) -> _Record:
+    """Walk, and keep the IMU site and the load on its foot."""
+    touch = np.arange(3) + body.SENSOR_TOUCH.start + (0 if plan.mount.foot == "right" else 3)
+    columns = np.r_[body.SENSOR_IMU_POSITION, body.SENSOR_IMU_QUATERNION]
+    chunks, weight = [], 1.0
+    for count, moment in enumerate(stroll(plan, policy)):
+        sensor = moment.trace.sensor[0]
+        load = sensor[:, touch].sum(axis=1, keepdims=True)
+        chunks.append(np.concatenate([sensor[:, columns], load], axis=1))
+        weight = float(sum(moment.walkers.models[0].body_mass)) * GRAVITY
+        if on_progress is not None and count % 100 == 0:
+            on_progress(moment.progress)
     record = np.concatenate(chunks)
     if not np.isfinite(record).all():
         raise FallError(f"{plan.name}: the physics is no longer finite (seed {plan.seed})")
-    return _Record(record[:, :3] * subject.scale, record[:, 3:7], record[:, 7] / weight)
+    return _Record(record[:, :3] * plan.subject.scale, record[:, 3:7], record[:, 7] / weight)
 
 
 def walk(
