@@ -41,7 +41,7 @@ class Difficulty:
     speed: tuple[float, float] = (0.65, 1.75)
     turn: float = 1.1
     grade: float = 0.09
-    stop: float = 0.2
+    stop: float = 0.3
     stand: float = 0.25
     kick: float = 0.06
     variability: float = 1.2

@@ -30,7 +30,7 @@ WEIGHTS = {
     "action": -0.0135,
     "impact": -0.06,
     "foot_jolt": -0.12,
-    "dawdle": -0.25,
+    "dawdle": -0.5,
     "wide": -0.08,
 }
 _BODY_WEIGHT = 740.0  # N

@@ -22,7 +22,8 @@ _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
 _STANDING_POINT = 0.035  # m, centre of mass before the middle of the ankles
 _FORWARD_MARGIN = (-0.06, 0.10)  # m about the standing point within which the capture point may lie
 _SIDE_MARGIN = 0.03  # m inside the feet's half distance
-_LARGEST_STAGGER = 0.18  # m
+_STAGGER_SHARE = 0.4  # of the stagger by which the feet's support reaches further, forward and back
+_LARGEST_STAGGER = 0.32  # m
 _LOADED = 100.0  # N
 
 # Gains of the standing controller, rad per m, per m/s, per rad.
@@ -160,13 +161,13 @@ class Gate:
         )
         go = (goal > GO_SPEED) | (self.closing & (self.value < 0.3) & off_balance)
         capturable = (
-            (s.capture_forward > _FORWARD_MARGIN[0])
-            & (s.capture_forward < _FORWARD_MARGIN[1])
+            (s.capture_forward > _FORWARD_MARGIN[0] - _STAGGER_SHARE * s.stagger)
+            & (s.capture_forward < _FORWARD_MARGIN[1] + _STAGGER_SHARE * s.stagger)
             & (np.abs(s.capture_left) < s.width / 2 - _SIDE_MARGIN)
             & (s.stagger < _LARGEST_STAGGER)
             & s.loaded
         )
-        stop = (speed < _STOP_SPEED) & (step_phase < 0.25) & capturable & ~go
+        stop = (speed < _STOP_SPEED) & (step_phase < 0.35) & capturable & ~go
         new = stop & ~self.closing
         self.closing = (self.closing | stop) & ~go
         return new
