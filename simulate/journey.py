@@ -1,4 +1,4 @@
-"""Walk a route from standing to standing: physics, steering and the truth that comes out.
+"""Walk a route, beginning with a stand: physics, steering and the truth that comes out.
 
 The physics moves the 1.75 m body (models.subject); what comes out is stretched to the subject.
 """
@@ -23,7 +23,7 @@ from footfall.models.subject import Subject
 from footfall.simulate.ground import ground_lookup
 from footfall.simulate.route import Route
 from footfall.simulate.steer import Pursuit, Stop
-from footfall.simulate.truth import at_rest, divisor, imu_truth, runs
+from footfall.simulate.truth import ImuTruth, at_rest, divisor, imu_truth, runs
 from footfall.simulate.walk import TrueFootfalls, Walk
 from footfall.simulate.walkers import N_ACTION, Trace, Walkers
 from footfall.streams import stream
@@ -31,7 +31,6 @@ from footfall.streams import stream
 PHYSICS_STEP = 0.001  # s, of the subject's time
 SUBSTEPS = 30  # physics steps of a control step
 NOSLIP_ITERATIONS = 4
-END_STAND_S = 2.0
 _RUN_OUT = 8.0  # m
 _SLOWEST = 0.35  # m/s; a walk that takes longer than this has got stuck
 
@@ -139,7 +138,7 @@ class Moment:
 
 
 def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
-    """Stand, walk the route and stand, one control step at a time.
+    """Stand and walk the route, one control step at a time.
 
     Raises
     ------
@@ -157,11 +156,11 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
         rng=stream(plan.seed, "gait variability"),
         ground=None if small.ground is None else ground_lookup(small.ground),
     )
-    noise = stream(plan.seed, "action noise")
+    noise, end = stream(plan.seed, "action noise"), plan.route.length / subject.scale
     pursuit = Pursuit(
         route,
         small.pace,
-        (Stop(0.0, small.calibration), *small.stops, Stop(plan.route.length / subject.scale, END_STAND_S)),
+        (Stop(0.0, small.calibration), *small.stops),
         wander=small.wander,
         wander_time=small.wander_time,
         dt=SUBSTEPS * step,
@@ -177,7 +176,7 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
         variability=np.array([plan.variability]),
         habits=[subject.habits],
     )
-    waiting = small.calibration + END_STAND_S + sum(stop.duration + 10 for stop in small.stops) + 20
+    waiting = small.calibration + sum(stop.duration + 10 for stop in small.stops) + 20
     limit = int((route.length / _SLOWEST + waiting) / (SUBSTEPS * step))
     try:
         for count in range(limit):
@@ -185,7 +184,7 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
             speed, turn = pursuit.command(
                 walkers.qpos[0, 0], walkers.qpos[0, 1], walkers.heading[0], walkers.speed[0], standing
             )
-            if pursuit.finished:
+            if pursuit.progress >= end:
                 return
             walkers.speed_goal[0], walkers.turn_goal[0] = speed, turn
             action = policy(walkers.observe())
@@ -222,10 +221,17 @@ def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | 
     return _Record(record[:, :3] * plan.subject.scale, record[:, 3:7], record[:, 7] / weight)
 
 
+def _truth(record: _Record, factor: int) -> tuple[ImuTruth, np.ndarray, np.ndarray]:
+    """What a perfect IMU says, the load on its foot, and its stances (m, 2) as rows."""
+    truth = imu_truth(record.position, record.quaternion, PHYSICS_STEP, factor)
+    contact = record.contact[truth.index]
+    return truth, contact, runs(at_rest(truth, contact, factor * PHYSICS_STEP))
+
+
 def walk(
     plan: Plan, policy: Policy | None = None, on_progress: Callable[[float], None] | None = None
 ) -> Walk:
-    """The truth of one walk along the plan's route, from standing to standing.
+    """The truth of one walk along the plan's route: it begins with a stand and ends with a footfall.
 
     Parameters
     ----------
@@ -242,13 +248,18 @@ def walk(
     policy = policy or stock_policy()
     interval = factor * PHYSICS_STEP
     record = _physics(plan, policy, on_progress)
-    truth = imu_truth(record.position, record.quaternion, PHYSICS_STEP, factor)
-    t = np.arange(len(truth.index)) * interval
-    contact = record.contact[truth.index]
-    rest = at_rest(truth, contact, interval)
-    stances = runs(rest)
+    truth, contact, stances = _truth(record, factor)
     if len(stances) < 3:
         raise FallError(f"{plan.name}: the walker made {len(stances)} footfalls, expected at least 3")
+    # A stance that the end of the walk cuts short is no footfall: end with the last whole one.
+    whole = stances[stances[:, 1] < len(truth.index) - 1]
+    end = truth.index[whole[-1, 1]] + 2 * factor
+    record = _Record(record.position[:end], record.quaternion[:end], record.contact[:end])
+    truth, contact, stances = _truth(record, factor)
+    t = np.arange(len(truth.index)) * interval
+    rest = np.zeros(len(t), dtype=bool)
+    for first, last in stances:
+        rest[first:last] = True
     rows = stances.mean(axis=1).astype(int)
     # The first stance is the stand before the walk: its footfall is the end of the calibration.
     rows[0] = min(int(plan.calibration / interval), stances[0, 1] - 1)

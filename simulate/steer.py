@@ -54,7 +54,7 @@ class Pursuit:
     Parameters
     ----------
     pace : m/s on straights
-    stops : where to stand and for how long, in walking order; the last is the end of the walk
+    stops : where to stand and for how long, in walking order
     wander : m, standard deviation of the slow lateral wander of the aim
     wander_time : s, its time constant (first-order Gauss-Markov)
     dt : s between commands
@@ -86,11 +86,6 @@ class Pursuit:
     def progress(self) -> float:
         """Distance along the route (m)."""
         return float(self.route.s[self._row])
-
-    @property
-    def finished(self) -> bool:
-        """Every stop, the last one too, has been stood through."""
-        return not self._stops
 
     def command(
         self, x: float, y: float, heading: float, speed: float, standing: bool
@@ -128,7 +123,7 @@ class Pursuit:
     def _speed(self, standing: bool) -> float:
         wanted = float(self._limit[self._row])
         if not self._stops:
-            return 0.0
+            return wanted
         stop = self._stops[0]
         left = stop.distance - self.progress
         allowed = np.sqrt(2 * SLOWING * max(left, 0.0))

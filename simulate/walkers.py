@@ -31,7 +31,6 @@ _MEAN_VELOCITY_S = 0.5
 ACTION_SCALE = 3.3 * np.array([0.2, 0.2, 0.2] + [0.35, 0.25, 0.25, 0.35, 0.25, 0.15] * 2)
 N_ACTION = body.N_SERVOS
 _RESIDUAL_LIMIT = 2.0  # of action scale, feedback included
-_STANDING_AUTHORITY = 0.25  # of the policy over a standing body
 
 _ADDUCTION = gait.mask("hip_adduction")
 _ANKLES = gait.mask("ankle")
@@ -249,8 +248,8 @@ class Walkers:
         self._decide(stand, balance.step_phase)
         gate_before = self.gate.advance(self.dt)
         open_ = gate_before[:, None]
-        walking = np.clip(action, -1, 1) * (_STANDING_AUTHORITY + (1 - _STANDING_AUTHORITY) * open_)
-        walking = walking + open_ * feedback(self.gains, balance) / ACTION_SCALE
+        # A standing body is left to the standing controller, which keeps it motionless.
+        walking = open_ * (np.clip(action, -1, 1) + feedback(self.gains, balance) / ACTION_SCALE)
         correction = mirror_where(self.left_stance, walking)
         correction += (1 - open_) * standing_feedback(stand) / ACTION_SCALE
         residual = np.clip(correction, -_RESIDUAL_LIMIT, _RESIDUAL_LIMIT)

@@ -133,7 +133,8 @@ def test_a_fall_ends_the_walk_with_a_sentence(short_plan: Plan) -> None:
     policy = stock_policy()
     lame = Policy(policy.weights, policy.biases, np.zeros(32), "lame")
     with pytest.raises(
-        FallError, match=r"short: the walker fell at -?\d+ m \(\d+ s, subject reference, seed 5, pace 1\.3 m/s\)"
+        FallError,
+        match=r"short: the walker fell at -?\d+ m \(\d+ s, subject reference, seed 5, pace 1\.3 m/s\)",
     ):
         walk(short_plan, lame)
 

@@ -180,7 +180,11 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
         ("pace_m_s = 1.2", 'pace_m_s = "1.2"', r"gait.pace_m_s = '1.2': .* valid number"),
         ("length_m = 50 ", "length_m = -50 ", r"path.elements.0\S* = -50(.0)?: .* greater than 0"),
         ("turn_deg = 90.0", "turn_deg = inf", r"path.elements.1\S*turn_deg = inf: .* finite"),
-        ("turn_deg = 90.0", "turn_deg = 90.0, radius_m = -1.0", r"path.elements.1.corner.radius_m = -1.0: .* 0"),
+        (
+            "turn_deg = 90.0",
+            "turn_deg = 90.0, radius_m = -1.0",
+            r"path.elements.1.corner.radius_m = -1.0: .* 0",
+        ),
         ("length_m = 30.0", "length_m = 1.0", r"path.elements.2.length_m = 1: too short for its corners"),
         ("turn_deg = 90.0", "turn_deg = 90.0, radius = 3", r"unknown key 'path.elements.1\S*radius' = 3"),
         ("[gait]", "closed = true\n[gait]", r"path.closed = true: .* \(50.000, 30.000\) m, 58.310 m from"),

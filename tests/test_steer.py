@@ -19,9 +19,8 @@ def route_of(curvature: np.ndarray, step: float = 0.05) -> Route:
 
 
 def pursuit_of(route: Route, *stops: Stop, wander: float = 0.0, seed: int = 0) -> Pursuit:
-    end = Stop(route.length, 0.0)
     rng = np.random.default_rng(seed)
-    return Pursuit(route, 1.3, (*stops, end), wander=wander, wander_time=4.0, dt=DT, rng=rng)
+    return Pursuit(route, 1.3, stops, wander=wander, wander_time=4.0, dt=DT, rng=rng)
 
 
 def follow(pursuit: Pursuit) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -30,7 +29,7 @@ def follow(pursuit: Pursuit) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     points, turns, speeds = [], [], []
     for _ in range(100_000):
         speed, turn = pursuit.command(x, y, heading, speed, speed == 0.0)
-        if pursuit.finished:
+        if pursuit.progress >= pursuit.route.length - 0.1:
             break
         heading += turn * DT
         x += speed * np.cos(heading) * DT
