@@ -69,7 +69,7 @@ class Recording:
 
 
 def write_recording(recording: Recording, path: str | os.PathLike[str]) -> None:
-    """Write `recording` to Parquet (columns of `shared` format: t, gyro_*, accel_*, temperature)."""
+    """Write `recording` to Parquet: t, gyro_x..z, accel_x..z, and temperature where there is one."""
     columns = {"t": recording.t}
     columns |= {name: recording.gyro[:, i] for i, name in enumerate(GYRO)}
     columns |= {name: recording.accel[:, i] for i, name in enumerate(ACCEL)}
