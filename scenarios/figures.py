@@ -42,33 +42,34 @@ _STYLE: Any = {
 
 
 def new_figure(
-    panels: int, width: float, height: float, columns: int | None = None, **kwargs: Any
-) -> tuple[Figure, list[Axes]]:
-    """A figure in the house's style, drawn without a screen, and its axes, row by row.
-
-    Parameters
-    ----------
-    panels : how many axes; width, height : of each (inches)
-    columns : as many as look good where left out
-    """
+    rows: int, columns: int, width: float, height: float, **kwargs: Any
+) -> tuple[Figure, np.ndarray]:
+    """A figure in the house's style with (rows, columns) axes, drawn without a screen."""
     import matplotlib as mpl
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    columns = columns or {1: 1, 2: 2, 3: 3, 4: 2, 5: 3, 6: 3}.get(panels, 4)
-    rows = -(-panels // columns)
-    if panels == 1:  # room for the head
-        width = max(width, 5.2)
     with mpl.rc_context(_STYLE):
-        figure = Figure(figsize=(width * columns, height * rows + 0.6), layout="constrained")
+        figure = Figure(figsize=(width, height), layout="constrained")
         FigureCanvasAgg(figure)
-        grid = figure.subplots(rows, columns, squeeze=False, **kwargs)
+        axes = figure.subplots(rows, columns, squeeze=False, **kwargs)
+    return figure, axes
+
+
+def new_panels(
+    count: int, width: float, height: float, columns: int | None = None, **kwargs: Any
+) -> tuple[Figure, list[Axes]]:
+    """A figure of `count` panels of width x height inches, row by row, as many columns as look good."""
+    columns = columns or {1: 1, 2: 2, 3: 3, 4: 2, 5: 3, 6: 3}.get(count, 4)
+    rows = -(-count // columns)
+    width = max(width * columns, 5.2)
+    figure, grid = new_figure(rows, columns, width, height * rows + 0.6, **kwargs)
     axes = list(grid.flat)
-    for axis in axes[panels:]:
+    for axis in axes[count:]:
         figure.delaxes(axis)
-    for axis in axes[max(0, panels - columns) : panels]:  # nothing stands below these
+    for axis in axes[max(0, count - columns) : count]:  # nothing stands below these
         axis.tick_params(labelbottom=True)
-    return figure, axes[:panels]
+    return figure, axes[:count]
 
 
 def label_edges(axes: Sequence[Axes], x: str, y: str) -> None:
@@ -128,7 +129,7 @@ def _named(results: Sequence[Result], what: str) -> str:
 
 def maps(results: Sequence[Result]) -> Figure:
     """Truth and every method's track, one panel a walk (the HDR paper's Figure 8)."""
-    figure, axes = new_figure(len(results), 3.7, 3.3)
+    figure, axes = new_panels(len(results), 3.7, 3.3)
     for axis, result in zip(axes, results, strict=True):
         colours = _colours(list(result.tracks))
         for name, track in result.tracks.items():
@@ -149,7 +150,7 @@ def heading_errors(results: Sequence[Result]) -> Figure:
     """Heading error against time, one panel a method, one line a walk."""
     methods = list(results[0].tracks)
     colours = _colours(methods)
-    figure, axes = new_figure(len(methods), 4.4, 3.0)
+    figure, axes = new_panels(len(methods), 4.4, 3.0)
     for axis, name in zip(axes, methods, strict=True):
         ends = []
         for i, result in enumerate(results):
@@ -200,7 +201,7 @@ def spread_out(values: np.ndarray, gap: float) -> np.ndarray:
 
 def drift_budget(results: Sequence[Result]) -> Figure:
     """Heading error by cause as it accumulates, one panel a walk; small causes are pooled."""
-    figure, axes = new_figure(len(results), 3.6, 2.8, sharex=True)
+    figure, axes = new_panels(len(results), 3.6, 2.8, sharex=True)
     headings = [
         {cause: np.degrees(np.cumsum(rate * r.budget.interval)) for cause, rate in r.budget.causes.items()}
         for r in results
@@ -235,7 +236,7 @@ def filtered_rates(results: Sequence[Result], method: str = "hdr", count: int = 
     worst = np.lib.stride_tricks.sliding_window_view(turning[settled:], count).max(axis=1)
     start = settled + int(np.argmin(worst))
     number = np.arange(start, start + count)
-    figure, (axis,) = new_figure(1, 6.4, 3.0)
+    figure, (axis,) = new_panels(1, 6.4, 3.0)
     for key, label, colour, width in (
         ("raw_rate", "raw", "#999999", 0.9),
         ("rate_once", "once filtered", "#c98a00", 1.4),
@@ -257,7 +258,7 @@ def _smooth(values: np.ndarray, strides: int = 25) -> np.ndarray:
 
 def controller(results: Sequence[Result], method: str = "hdr") -> Figure:
     """The controller's -I beside the true drift, which the paper could not know."""
-    figure, axes = new_figure(
+    figure, axes = new_panels(
         len(results),
         7.0 if len(results) < 5 else 5.2,
         1.7,
