@@ -17,7 +17,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from footfall import __version__
 from footfall.errors import InputError
-from footfall.terminal import ERR, OUT, finite, perform, print_json, require_output, say
+from footfall.terminal import ERR, OUT, blaming, finite, perform, print_json, require_output, say
 
 if TYPE_CHECKING:
     from footfall.scenarios.run import Result, Task
@@ -308,9 +308,11 @@ def track(
 
     require_output(output, ".parquet", recording)
     require_methods([method])
-    params = PdrParams(bias_s=bias_time)
+    params, start = PdrParams(bias_s=bias_time), StartPose(heading=math.radians(heading))
     with ERR.status("navigating"):
-        result = navigate(read_recording(recording), method, StartPose(heading=math.radians(heading)), params)
+        samples = read_recording(recording)
+        with blaming(recording):
+            result = navigate(samples, method, start, params)
         write_track(result, output)
     say(f"{len(result)} footfalls: {output}")
 
@@ -333,10 +335,8 @@ def score(
     from footfall.simulate.walk import read_walk
 
     estimate, truth = read_track(track), read_walk(walk)
-    try:
+    with blaming(track, "track"):
         result = judge(estimate, truth)
-    except InputError as error:
-        raise InputError(f"{track}: {str(error).removeprefix('track: ')}") from None
     if as_json:
         print_json(result.as_dict())
     else:
@@ -377,10 +377,8 @@ def allan(
         unit = draw_unit(load_spec(imu), unit_seed)
         with ERR.status(f"resting for {hours:g} h"):
             resting = resting_recording(unit, hours * 3600, unit_seed)
-    try:
+    with blaming(recording or imu):
         result = allan_report(resting, figure)
-    except InputError as error:
-        raise InputError(f"{recording or imu}: {error}") from None
     if as_json:
         print_json(result)
     else:

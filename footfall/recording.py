@@ -98,4 +98,4 @@ def read_recording(path: str | os.PathLike[str]) -> Recording:
             meta=meta,
         )
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        raise InputError(f"{path}: {str(error).removeprefix('recording: ')}") from None

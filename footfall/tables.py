@@ -90,23 +90,32 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
     try:
         # A folder named like `seed=3` is no partition, and adds no column.
         table = pa_csv.read_csv(source) if kind == "CSV" else pq.read_table(source, partitioning=None)
-    except (pa.ArrowException, OSError) as error:
+        names = table.column_names
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         reason = str(error).splitlines()[0]
         raise InputError(f"{source}: not a readable {kind} file ({reason})") from None
-    columns = {}
-    for name, column in zip(table.column_names, table.columns, strict=True):
+    columns: dict[str, np.ndarray] = {}
+    for name, column in zip(names, table.columns, strict=True):
         holds = column.type
+        if name in columns:
+            raise InputError(f"{source}: two columns are called {name!r}")
         if not (pa.types.is_floating(holds) or pa.types.is_integer(holds) or pa.types.is_boolean(holds)):
             raise InputError(f"{source}: column {name!r} holds {holds}, expected numbers")
+        # Nulls become NaN, which each reader judges. A copy: Arrow's memory may be read-only, for which
+        # compiled kernels would have to be compiled once more.
         values = column.to_numpy(zero_copy_only=False)
-        if column.null_count:
-            values = np.asarray(values, dtype=float)  # nulls become NaN, which each reader judges
-        columns[name] = values
+        columns[name] = np.array(values, dtype=float if column.null_count else None)
+    return columns, _meta(source, table)
+
+
+def _meta(source: Path, table: pa.Table) -> dict[str, Any]:
     try:
         meta = json.loads((table.schema.metadata or {}).get(META_KEY, b"{}"))
     except ValueError:
-        raise InputError(f"{source}: its metadata {META_KEY.decode()!r} is not JSON") from None
-    return columns, meta
+        meta = None
+    if not isinstance(meta, dict):
+        raise InputError(f"{source}: its metadata {META_KEY.decode()!r} is not a JSON object")
+    return meta
 
 
 def require_columns(source: str, columns: Columns, names: tuple[str, ...]) -> None:

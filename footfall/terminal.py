@@ -6,6 +6,8 @@ import json
 import math
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +39,15 @@ def finite(value: float | None) -> float | None:
     if value is not None and not math.isfinite(value):
         raise typer.BadParameter(f"{value} is not a finite number")
     return value
+
+
+@contextmanager
+def blaming(file: Path | str, part: str = "recording") -> Iterator[None]:
+    """Name the file in what is said of the `part` that was read from it."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{file}: {str(error).removeprefix(f'{part}: ')}") from None
 
 
 def require_output(file: Path, ending: str, *inputs: Path) -> None:
