@@ -308,7 +308,9 @@ def track(
 
     require_output(output, ".parquet", recording)
     require_methods([method])
-    params, start = PdrParams(bias_s=bias_time), StartPose(heading=math.radians(heading))
+    with blaming("--bias-time", "pdr"):
+        params = PdrParams(bias_s=bias_time)
+    start = StartPose(heading=math.radians(heading))
     with ERR.status("navigating"):
         samples = read_recording(recording)
         with blaming(recording):

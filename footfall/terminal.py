@@ -74,7 +74,7 @@ def require_output(file: Path, ending: str, *inputs: Path) -> None:
 def perform(app: typer.Typer, arguments: list[str] | None) -> int:
     """Run a command line, tell each mistake in one sentence, and return the exit code."""
     try:
-        code = int(app(arguments, standalone_mode=False) or 0)
+        code = int(app(arguments, standalone_mode=False, prog_name="footfall") or 0)
     except InputError as error:
         return _refuse(str(error))
     except OSError as error:  # a full disk, say

@@ -160,10 +160,9 @@ def tasks(
 
 
 def _start_worker(done: Any) -> None:
-    """Take the shared array of progress; leave interrupts to the parent, and end when it ends, however."""
+    """Take the shared array of progress, and end when the parent ends, however it does."""
     global _done
     _done = done
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def follow() -> None:
         parent = multiprocessing.parent_process()
@@ -203,7 +202,12 @@ def perform_all(
     others = set(multiprocessing.active_children())
     with ProcessPoolExecutor(workers, context, _start_worker, (done,)) as pool:
         try:
-            futures = [pool.submit(_perform, index, task) for index, task in enumerate(todo)]
+            # Ctrl-C is the parent's to answer. Workers inherit that it is held back while they are started.
+            mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                futures = [pool.submit(_perform, index, task) for index, task in enumerate(todo)]
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, mask)
             for future in futures:
                 while not wait([future], timeout=0.2).done:
                     if on_progress is not None:
