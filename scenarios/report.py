@@ -105,7 +105,7 @@ def new_table(*columns: str, left: int = 1) -> Table:
     """A table that stays readable on a terminal of 80 columns: its first `left` columns are text."""
     table = Table(box=SIMPLE_HEAD, show_edge=False, show_header=any(columns))
     for i, column in enumerate(columns):
-        table.add_column(column, justify="left" if i < left else "right")
+        table.add_column(column, justify="left" if i < left else "right", overflow="fold")
     return table
 
 

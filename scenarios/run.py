@@ -95,8 +95,9 @@ def perform(task: Task, on_progress: Callable[[float, int], None] | None = None)
     """
     scenario = task.scenario
     plan = replace(scenario.plan(task.number), seed=task.walk_seed)
-    report = on_progress or (lambda metres, units: None)
-    walk = cached_walk(plan, use_cache=task.use_cache, on_progress=lambda metres: report(metres, 0))
+    report, length = on_progress or (lambda metres, units: None), plan.route.length
+    # The walker goes on for a few metres beyond the end, which are not part of the walk.
+    walk = cached_walk(plan, use_cache=task.use_cache, on_progress=lambda at: report(min(at, length), 0))
     spec = load_spec(task.imu)
     start = start_pose(walk)
 
@@ -106,7 +107,7 @@ def perform(task: Task, on_progress: Callable[[float, int], None] | None = None)
     made = tracks(Reckoning(recording, start), task.methods)
     others = []
     for count, seed in enumerate(task.others, start=1):
-        report(plan.route.length, count)
+        report(length, count)
         other = record(walk, draw_unit(spec, seed), seed=seed, temperature=scenario.temperature)
         found = tracks(Reckoning(other, start), task.methods)
         others.append({name: score(track, walk) for name, track in found.items()})
