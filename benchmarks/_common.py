@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import multiprocessing
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, fields, replace
@@ -32,7 +33,8 @@ from footfall.simulate.route import Route
 J = TypeVar("J")
 R = TypeVar("R")
 
-out = Console(soft_wrap=True)
+# A file is as wide as the widest table.
+out = Console(soft_wrap=True, width=None if sys.stdout.isatty() else 120)
 err = Console(stderr=True, soft_wrap=True)
 
 

@@ -70,5 +70,5 @@ def draw(
     axis.set_xlabel("uncorrected average heading error (deg)")
     axis.set_ylabel("with HDR (deg)")
     axis.set_title("Every judged unit", loc="left", fontsize=9)
-    axis.legend(fontsize=7)
+    axis.legend(fontsize=7, frameon=False)
     save(figure, path)
