@@ -161,7 +161,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         ]
         table.add_row(label, *cells, style=None if share else "bold")
     out.print(table)
-    out.print(f"Target: 60 s for physics and truth together. Path: the start of {plan.name}, seed {plan.seed}.")
+    out.print(f"Target: 60 s, physics and truth together. Path: the start of {plan.name}, seed {plan.seed}.")
     write_json(chosen.json, {"scenario": plan.name, "simulated_minutes": minutes, "cpu_s": found})
 
 
