@@ -6,42 +6,39 @@ input, told in one sentence.
 
 from __future__ import annotations
 
-import json
+import math
 import sys
+from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
 
 from footfall import __version__
 from footfall.errors import InputError
+from footfall.terminal import ERR, OUT, blaming, finite, perform, print_json, require_output, say
 
 if TYPE_CHECKING:
     from footfall.scenarios.run import Result, Task
 
 app = typer.Typer(
     add_completion=False,
-    no_args_is_help=True,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
-    help="Footfall: a physics-simulated gait testbed for pedestrian dead reckoning.\n\n"
-    "Start with: [bold]footfall run closed-loop[/bold]",
+    help="Footfall lets a simulated person walk a path with an IMU on the shoe, and tells how far pedestrian "
+    "dead reckoning goes astray on it, with and without heading correction.\n\n"
+    "Start with [bold]footfall run closed-loop[/bold], or go step by step: walk, record, track, score.",
 )
-_out = Console()
-_err = Console(stderr=True)
-
 ScenarioArgument = Annotated[
-    str, typer.Argument(help="A stock scenario (see `footfall list`) or a TOML file.")
+    str, typer.Argument(help="A scenario that comes with Footfall (see `footfall list`), or your TOML file.")
 ]
-SeedOption = Annotated[
-    int | None, typer.Option(min=0, help="Seed of the first walk; the scenario's own if left out.")
+OutputOption = Annotated[Path, typer.Option("--output", "-o", help="Parquet file to write.")]
+NoCacheOption = Annotated[
+    bool, typer.Option("--no-cache", help="Walk even if this walk is in the cache, and do not keep it there.")
 ]
-NoCacheOption = Annotated[bool, typer.Option("--no-cache", help="Walk anew, and do not keep the walk.")]
 JsonOption = Annotated[
-    bool, typer.Option("--json", help="One JSON document on standard output instead of tables.")
+    bool, typer.Option("--json", help="Print one JSON document instead of tables, for programs.")
 ]
 
 
@@ -51,155 +48,166 @@ def _version(asked: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
+@app.callback(invoke_without_command=True)
 def _main(
+    context: typer.Context,
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
 ) -> None:
-    pass
+    if context.invoked_subcommand is None:
+        print(context.get_help())
 
 
 @app.command("list")
 def list_(as_json: JsonOption = False) -> None:
-    """Scenarios, IMUs, mounts and methods that come with Footfall."""
+    """Show what comes with Footfall: scenarios, IMUs, methods, mounts and sensor effects."""
     from footfall.hdr.methods import METHODS
     from footfall.models.body import MOUNTS
     from footfall.models.imu import EFFECTS, load_spec, stock_specs
+    from footfall.scenarios.report import new_table, titled
     from footfall.scenarios.scenario import load_scenario, stock_scenarios
 
     scenarios = {name: load_scenario(name) for name in stock_scenarios()}
     imus = {name: load_spec(name).name for name in stock_specs()}
     methods = {name: method.description for name, method in METHODS.items()}
     if as_json:
-        document = {
-            "scenarios": {name: scenario.description for name, scenario in scenarios.items()},
-            "imus": imus,
-            "methods": methods,
-            "mounts": list(MOUNTS),
-            "effects": list(EFFECTS),
-        }
-        print(json.dumps(document, indent=2))
+        print_json(
+            {
+                "scenarios": {name: scenario.description for name, scenario in scenarios.items()},
+                "imus": imus,
+                "methods": methods,
+                "mounts": list(MOUNTS),
+                "effects": list(EFFECTS),
+            }
+        )
         return
-    table = Table(title="Scenarios", title_justify="left")
-    for column in ("name", "length m", "pace m/s", "walks", "what"):
-        table.add_column(column, justify="right" if column in ("length m", "pace m/s", "walks") else "left")
+    table = new_table("name", "what", "length\nm", "pace\nm/s", "walks", left=2)
     for name, scenario in scenarios.items():
         length = f"{scenario.path.route.length:.0f}"
-        table.add_row(name, length, f"{scenario.pace:g}", f"{scenario.walks}", scenario.description)
-    _out.print(table)
-    for title, rows in (("IMUs", imus), ("Methods", methods)):
-        table = Table(title=title, title_justify="left")
-        table.add_column("name")
-        table.add_column("what")
+        table.add_row(name, scenario.description, length, f"{scenario.pace:g}", f"{scenario.walks}")
+    OUT.print(titled("Scenarios", table))
+    for title, rows in (("IMUs", imus), ("Methods, from a recording to a track", methods)):
+        table = new_table("name", "what", left=2)
         for name, text in rows.items():
             table.add_row(name, text)
-        _out.print(table)
-    _out.print(f"Mounts: {', '.join(MOUNTS)}")
-    _out.print(f"Sensor effects, in their order: {', '.join(EFFECTS)}")
+        OUT.print(titled(title, table))
+    OUT.print(f"[bold]Mounts of the IMU[/bold]: {', '.join(MOUNTS)}")
+    OUT.print(f"[bold]Sensor effects[/bold], in their order: {', '.join(EFFECTS)}")
 
 
 @app.command()
 def run(
     scenario: ScenarioArgument,
     walks: Annotated[
-        int | None, typer.Option(min=1, help="How many walks; the scenario's own if left out.")
+        int | None, typer.Option(min=1, help="How many walks; the scenario says if left out.")
     ] = None,
-    seed: SeedOption = None,
-    imu: Annotated[str | None, typer.Option(help="IMU: a stock name or a data sheet's path.")] = None,
-    methods: Annotated[str, typer.Option(help="Methods, separated by commas.")] = "pdr,hdr",
+    seed: Annotated[
+        int | None,
+        typer.Option(
+            min=0, help="Seed of the first walk, the next has the next; the scenario says if left out."
+        ),
+    ] = None,
+    imu: Annotated[
+        str | None,
+        typer.Option(help="IMU on the shoe: a name or your data sheet; the scenario says if left out."),
+    ] = None,
+    methods: Annotated[
+        str, typer.Option(help="Methods to compare, separated by commas (see `footfall list`).")
+    ] = "pdr,hdr",
     units: Annotated[
-        int, typer.Option(min=0, help="Further units of the sheet to score on the same walks.")
+        int,
+        typer.Option(min=0, help="So many other units of the IMU are scored too, shared among the walks."),
     ] = 50,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for tables and figures; out/SCENARIO if left out.")
+        Path | None,
+        typer.Option(help="Folder for the results; out/SCENARIO if left out.", show_default=False),
     ] = None,
     no_cache: NoCacheOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Walk, record, navigate, correct and score a scenario."""
-    from footfall.hdr.methods import require_methods
-    from footfall.models.imu import load_spec
+    """Do it all: walk a scenario, record it, navigate by each method and score the tracks.
+
+    The folder gets scores.json, every walk, recording and track (Parquet) and the figures (PNG).
+    """
     from footfall.scenarios import report
-    from footfall.scenarios.results import write_results
+    from footfall.scenarios.results import results_folder, write_results
     from footfall.scenarios.run import tasks
     from footfall.scenarios.scenario import load_scenario
 
     chosen = load_scenario(scenario)
     names = tuple(dict.fromkeys(name.strip() for name in methods.split(",")))
-    require_methods(names)
-    load_spec(imu or chosen.imu)
-    folder = out or Path("out") / chosen.name
-    _require_folder(folder)
     todo = tasks(
         chosen, walks=walks, seed=seed, imu=imu, methods=names, other_units=units, use_cache=not no_cache
     )
-    results = _perform(todo)
-    document = report.as_json(chosen.name, results)
-    with _err.status("writing files and figures"):
-        write_results(results, document, folder)
+    folder = out or Path("out") / chosen.name
+    with results_folder(folder):
+        results = _perform_all(todo)
+        document = report.as_json(chosen.name, results)
+        with ERR.status("writing files and figures"):
+            write_results(results, document, folder)
     if as_json:
-        print(json.dumps(document, indent=2))
+        print_json(document)
     else:
-        _print_run(results, chosen.name)
-    _err.print(f"Scores, walks, tracks and figures are in {folder}")
+        for part in report.run_report(chosen.name, results):
+            OUT.print(part)
+    say(f"Scores, walks, tracks and figures are in {folder}")
 
 
-def _print_run(results: list[Result], name: str) -> None:
-    from footfall.scenarios import report
-
-    first = results[0]
-    distance = report.as_json(name, results)["distance_m"]
-    _out.print(f"[bold]{name}[/bold]: {len(results)} walks of {distance:.0f} m, IMU {first.task.imu}")
-    _out.print(report.heading_table(results))
-    if name == "closed-loop":
-        _out.print(report.paper_table())
-    if first.task.scenario.units and first.task.unit_seed in first.task.scenario.units:
-        _out.print(
-            "The walks' own units were drawn from the sheet and kept because their uncorrected errors lie in the "
-            "range of the paper's Table 2; the other units below were not chosen.",
-            style="dim",
-        )
-    if (others := report.others_table(results)) is not None:
-        _out.print(others)
-    _out.print(report.position_table(results))
-
-
-def _perform(todo: list[Task]) -> list[Result]:
+def _perform_all(todo: list[Task]) -> list[Result]:
     """All results, with one progress bar a walk."""
     from footfall.scenarios.run import perform_all
 
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("m"),
-        TimeElapsedColumn(),
-    )
-    with Progress(*columns, console=_err, transient=True) as progress:
-        length = todo[0].scenario.path.route.length
-        bars = [
-            progress.add_task(f"walk {task.number + 1}, unit {task.unit_seed}", total=round(length))
-            for task in todo
-        ]
+    length = todo[0].scenario.path.route.length
+
+    def show(index: int, metres: float, unit: int) -> None:
+        task = todo[index]
+        label = f"walk {task.number + 1}, unit {task.unit_seed}"
+        if unit:
+            label = f"walk {task.number + 1}, other unit {unit} of {len(task.others)}"
+        progress.update(bars[index], completed=round(metres), description=label)
+
+    text, metre = TextColumn("{task.description}"), TextColumn("m")
+    columns = (text, BarColumn(), MofNCompleteColumn(), metre, TimeElapsedColumn())
+    with Progress(*columns, console=ERR, transient=True, disable=not ERR.is_terminal) as progress:
+        bars = [progress.add_task(f"walk {task.number + 1}", total=round(length)) for task in todo]
         results = []
-        for result in perform_all(todo, lambda i, metres: progress.update(bars[i], completed=round(metres))):
-            progress.update(bars[result.task.number], completed=round(length))
-            results.append(result)
+        with closing(perform_all(todo, show)) as performed:
+            for index, result in enumerate(performed):
+                show(index, length, 0)
+                results.append(result)
     return results
 
 
 @app.command()
 def walk(
     scenario: ScenarioArgument,
-    output: Annotated[Path, typer.Option("--output", "-o", help="Parquet file to write.")],
-    seed: SeedOption = None,
-    number: Annotated[int, typer.Option(min=1, help="Which of the scenario's walks (its subject).")] = 1,
-    rate: Annotated[float | None, typer.Option(help="Hz; must divide 1000.")] = None,
-    mount: Annotated[str | None, typer.Option(help="Where the IMU sits (see `footfall list`).")] = None,
+    output: OutputOption,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Seed of this walk; the scenario says if left out.")
+    ] = None,
+    number: Annotated[
+        int, typer.Option(min=1, help="Which of the scenario's walks: its subject and its seed.")
+    ] = 1,
+    rate: Annotated[
+        float | None,
+        typer.Option(
+            help="Samples per second (Hz), a divisor of 1000; the scenario says if left out.",
+            callback=finite,
+        ),
+    ] = None,
+    mount: Annotated[
+        str | None,
+        typer.Option(
+            help="Where on the shoe the IMU sits (see `footfall list`); the scenario says if left out."
+        ),
+    ] = None,
     no_cache: NoCacheOption = False,
 ) -> None:
-    """Truth only: walk a scenario once."""
+    """Walk a scenario once and write the truth: where the IMU was, and what a perfect one would say.
+
+    The true footfalls go into a second file: walk.parquet and walk.footfalls.parquet.
+    """
     from dataclasses import replace
 
     from footfall.models.body import MOUNTS
@@ -209,8 +217,8 @@ def walk(
     from footfall.simulate.truth import divisor
     from footfall.simulate.walk import write_walk
 
-    chosen = load_scenario(scenario)
-    plan = chosen.plan(number - 1)
+    require_output(output, ".parquet")
+    plan = load_scenario(scenario).plan(number - 1)
     if mount is not None:
         if mount not in MOUNTS:
             raise InputError(f"--mount {mount!r} is unknown, expected one of {', '.join(MOUNTS)}")
@@ -220,148 +228,169 @@ def walk(
         plan = replace(plan, rate_hz=rate)
     if seed is not None:
         plan = replace(plan, seed=seed)
-    _require_parent(output)
-    with Progress(console=_err, transient=True) as progress:
+    with Progress(console=ERR, transient=True, disable=not ERR.is_terminal) as progress:
         bar = progress.add_task("walking", total=plan.route.length)
         truth = cached_walk(
             plan, use_cache=not no_cache, on_progress=lambda metres: progress.update(bar, completed=metres)
         )
     write_walk(truth, output)
-    _err.print(f"{len(truth.footfalls.t)} footfalls in {truth.t[-1]:.0f} s: {output}")
+    say(f"{len(truth.footfalls.t)} footfalls in {truth.t[-1]:.0f} s: {output}")
 
 
 @app.command()
 def record(
     walk: Annotated[Path, typer.Argument(help="A walk that `footfall walk` wrote.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="Parquet file to write.")],
-    imu: Annotated[str, typer.Option(help="A stock IMU or a data sheet's path.")] = "nimu",
-    unit_seed: Annotated[int, typer.Option(min=0, help="Which unit is drawn from the sheet.")] = 1,
+    output: OutputOption,
+    imu: Annotated[
+        str, typer.Option(help="An IMU's name (see `footfall list`) or your data sheet.")
+    ] = "nimu",
+    unit_seed: Annotated[
+        int, typer.Option(min=0, help="Which individual of that IMU: each seed is another one.")
+    ] = 1,
     without: Annotated[
-        list[str] | None, typer.Option(help="Switch an effect off; may be repeated (see `footfall list`).")
+        list[str] | None,
+        typer.Option(
+            help="Switch a sensor effect off (see `footfall list`); may be repeated.", show_default=False
+        ),
     ] = None,
-    indoors: Annotated[float, typer.Option(help="degC, the unit when it is carried out.")] = 20.0,
-    outdoors: Annotated[float, typer.Option(help="degC, the air outside.")] = 20.0,
+    indoors: Annotated[
+        float, typer.Option(help="Temperature of the room that the IMU comes from, degC.", callback=finite)
+    ] = 20.0,
+    outdoors: Annotated[
+        float, typer.Option(help="Temperature where it is walked, degC.", callback=finite)
+    ] = 20.0,
 ) -> None:
-    """What one IMU unit would have said on a walk."""
+    """Record a walk with one individual IMU: the truth with that sensor's errors."""
     from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
     from footfall.recording import write_recording
     from footfall.simulate.record import record as record_walk
-    from footfall.simulate.walk import read_walk
+    from footfall.simulate.walk import footfalls_path, read_walk
 
+    require_output(output, ".parquet", walk, footfalls_path(walk))
     unit = draw_unit(load_spec(imu), unit_seed)
-    truth = read_walk(walk)
-    _require_parent(output)
-    recording = record_walk(
-        truth,
-        unit,
-        seed=unit_seed,
-        temperature=TemperatureProfile.step(indoors, outdoors),
-        without=without or (),
-    )
-    write_recording(recording, output)
-    _err.print(f"{len(recording.t)} samples: {output}")
+    with ERR.status("recording"):
+        recording = record_walk(
+            read_walk(walk),
+            unit,
+            seed=unit_seed,
+            temperature=TemperatureProfile.step(indoors, outdoors),
+            without=without or (),
+        )
+        write_recording(recording, output)
+    say(f"{len(recording.t)} samples: {output}")
 
 
 @app.command()
 def track(
-    recording: Annotated[Path, typer.Argument(help="A recording, simulated or real: Parquet or CSV.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="Parquet file to write.")],
+    recording: Annotated[
+        Path,
+        typer.Argument(
+            help="A recording, simulated or real: Parquet or CSV with t (s), gyro_x, gyro_y, gyro_z (rad/s), "
+            "accel_x, accel_y, accel_z (m/s2)."
+        ),
+    ],
+    output: OutputOption,
     method: Annotated[str, typer.Option(help="How to navigate (see `footfall list`).")] = "hdr",
-    bias_time: Annotated[float, typer.Option(help="s at rest from which the static bias is taken.")] = 25.0,
-    heading: Annotated[float, typer.Option(help="deg, heading at the start.")] = 0.0,
+    bias_time: Annotated[
+        float,
+        typer.Option(help="Seconds at rest at the start, over which gyro bias is averaged.", callback=finite),
+    ] = 25.0,
+    heading: Annotated[
+        float, typer.Option(help="Heading at the start, deg, counter-clockwise from x.", callback=finite)
+    ] = 0.0,
 ) -> None:
-    """Navigate a recording."""
-    import math
-
+    """Navigate: from a recording, simulated or real, to a track with one row a footfall."""
     from footfall.hdr.methods import require_methods
     from footfall.hdr.methods import track as navigate
     from footfall.pdr.pdr import PdrParams, StartPose
     from footfall.pdr.track import write_track
     from footfall.recording import read_recording
 
+    require_output(output, ".parquet", recording)
     require_methods([method])
-    _require_parent(output)
+    with blaming("--bias-time", "pdr"):
+        params = PdrParams(bias_s=bias_time)
     start = StartPose(heading=math.radians(heading))
-    result = navigate(read_recording(recording), method, start, PdrParams(bias_s=bias_time))
-    write_track(result, output)
-    _err.print(f"{len(result)} footfalls: {output}")
+    with ERR.status("navigating"):
+        samples = read_recording(recording)
+        with blaming(recording):
+            result = navigate(samples, method, start, params)
+        write_track(result, output)
+    say(f"{len(result)} footfalls: {output}")
 
 
 @app.command()
 def score(
-    track: Annotated[Path, typer.Argument(help="A track, ours or anyone's (t, x, y, z, heading).")],
-    walk: Annotated[Path, typer.Argument(help="The walk that it was made from.")],
+    track: Annotated[
+        Path,
+        typer.Argument(
+            help="A track, ours or anyone's: Parquet or CSV with t, x, y, z, heading (s, m, rad)."
+        ),
+    ],
+    walk: Annotated[Path, typer.Argument(help="The walk that was recorded.")],
     as_json: JsonOption = False,
 ) -> None:
-    """How far a track is off the truth."""
+    """Score a track against the true walk: heading and position errors."""
     from footfall.pdr.track import read_track
     from footfall.scenarios.report import score_table
     from footfall.scenarios.score import score as judge
     from footfall.simulate.walk import read_walk
 
-    result = judge(read_track(track), read_walk(walk))
+    estimate, truth = read_track(track), read_walk(walk)
+    with blaming(track, "track"):
+        result = judge(estimate, truth)
     if as_json:
-        print(json.dumps(result.as_dict(), indent=2))
+        print_json(result.as_dict())
     else:
-        _out.print(score_table({track.stem: result}))
+        OUT.print(score_table(result))
 
 
 @app.command()
 def allan(
     recording: Annotated[
-        Path | None, typer.Argument(help="A recording at rest, an hour or so; a simulated one if left out.")
+        Path | None,
+        typer.Argument(help="A recording at rest, best an hour long; if left out, one is simulated."),
     ] = None,
-    imu: Annotated[str, typer.Option(help="The IMU to simulate at rest.")] = "nimu",
-    unit_seed: Annotated[int, typer.Option(min=0, help="Which unit of it.")] = 1,
-    hours: Annotated[float, typer.Option(min=0.05, max=24, help="How long it rests.")] = 1.0,
-    figure: Annotated[Path | None, typer.Option(help="PNG file to draw the Allan deviation into.")] = None,
+    imu: Annotated[str, typer.Option(help="The IMU to simulate: its name or your data sheet.")] = "nimu",
+    unit_seed: Annotated[
+        int, typer.Option(min=0, help="Which individual of that IMU: each seed is another one.")
+    ] = 1,
+    hours: Annotated[
+        float, typer.Option(min=0.05, max=24, help="How long the simulated IMU rests.", callback=finite)
+    ] = 1.0,
+    figure: Annotated[
+        Path | None, typer.Option(help="PNG file to draw the Allan deviation into.", show_default=False)
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Allan deviation of a resting IMU's gyros, and the bias time T_bias that it justifies."""
+    """Tell how long an IMU should rest before a walk, from its Allan deviation.
+
+    The time is that after which averaging the gyros removes no more noise (T_bias of the HDR paper).
+    """
     from footfall.models.imu import draw_unit, load_spec
     from footfall.recording import read_recording
-    from footfall.scenarios.allan import allan_report, resting_recording
+    from footfall.scenarios.allan import allan_report, allan_table, resting_recording
 
     if figure is not None:
-        _require_parent(figure)
+        require_output(figure, ".png")
     if recording is not None:
         resting = read_recording(recording)
     else:
         unit = draw_unit(load_spec(imu), unit_seed)
-        with _err.status(f"resting for {hours:g} h"):
+        with ERR.status(f"resting for {hours:g} h"):
             resting = resting_recording(unit, hours * 3600, unit_seed)
-    result = allan_report(resting, figure)
+    with blaming(recording or imu):
+        result = allan_report(resting, figure)
     if as_json:
-        print(json.dumps(result, indent=2))
-        return
-    for name, value in result.items():
-        _out.print(f"{name:28s} {value:.4g}")
+        print_json(result)
+    else:
+        OUT.print(allan_table(result))
 
 
-def _require_folder(folder: Path) -> None:
-    """Refuse a folder that cannot be written before any work is done."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"--out {folder}: cannot be made ({error.strerror})") from None
-
-
-def _require_parent(file: Path) -> None:
-    if not file.parent.is_dir():
-        raise InputError(f"{file}: the folder {file.parent} does not exist")
-
-
-def main(arguments: list[str] | None = None) -> Any:
-    """Entry point of the `footfall` command."""
-    try:
-        app(arguments)
-    except InputError as error:
-        print(f"footfall: {error}", file=sys.stderr)
-        raise SystemExit(2) from None
-    except KeyboardInterrupt:
-        print("footfall: interrupted", file=sys.stderr)
-        raise SystemExit(130) from None
+def main(arguments: list[str] | None = None) -> int:
+    """Entry point of the `footfall` command; returns its exit code."""
+    return perform(app, arguments)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

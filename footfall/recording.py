@@ -69,7 +69,7 @@ class Recording:
 
 
 def write_recording(recording: Recording, path: str | os.PathLike[str]) -> None:
-    """Write `recording` to Parquet (columns of `shared` format: t, gyro_*, accel_*, temperature)."""
+    """Write `recording` to Parquet: t, gyro_x..z, accel_x..z, and temperature where there is one."""
     columns = {"t": recording.t}
     columns |= {name: recording.gyro[:, i] for i, name in enumerate(GYRO)}
     columns |= {name: recording.accel[:, i] for i, name in enumerate(ACCEL)}
@@ -98,4 +98,4 @@ def read_recording(path: str | os.PathLike[str]) -> Recording:
             meta=meta,
         )
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        raise InputError(f"{path}: {str(error).removeprefix('recording: ')}") from None

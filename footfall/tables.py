@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -33,24 +33,24 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     Raises
     ------
     InputError
-        The folder does not exist or cannot be written.
+        The folder does not exist or cannot be written, `path` is itself a folder, or the disk is full.
     """
     target = Path(path)
     try:
         handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".tmp")
+        os.close(handle)
+        temporary = Path(name)
+        try:
+            yield temporary
+            # mkstemp makes a private file; a result is as readable as any other new file.
+            umask = os.umask(0)
+            os.umask(umask)
+            temporary.chmod(0o666 & ~umask)
+            temporary.replace(target)
+        finally:
+            temporary.unlink(missing_ok=True)
     except OSError as error:
-        raise InputError(f"{target}: cannot write there ({error.strerror})") from None
-    os.close(handle)
-    temporary = Path(name)
-    try:
-        yield temporary
-        # mkstemp makes a private file; a result is as readable as any other new file.
-        umask = os.umask(0)
-        os.umask(umask)
-        temporary.chmod(0o666 & ~umask)
-        temporary.replace(target)
-    finally:
-        temporary.unlink(missing_ok=True)
+        raise InputError(f"{target}: cannot be written ({error.strerror or error})") from None
 
 
 def write_table(
@@ -86,24 +86,36 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
     source = Path(path)
     if not source.is_file():
         raise InputError(f"{source}: no such file")
-    read: Callable[..., pa.Table] = pa_csv.read_csv if source.suffix.lower() == ".csv" else pq.read_table
+    kind = "CSV" if source.suffix.lower() == ".csv" else "Parquet"
     try:
-        table = read(source)
-    except (pa.ArrowException, OSError) as error:
-        raise InputError(
-            f"{source}: not a readable Parquet or CSV file ({str(error).splitlines()[0]})"
-        ) from None
-    columns = {}
-    for name, column in zip(table.column_names, table.columns, strict=True):
-        kind = column.type
-        if not (pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)):
-            raise InputError(f"{source}: column {name!r} holds {kind}, expected numbers")
+        # A folder named like `seed=3` is no partition, and adds no column.
+        table = pa_csv.read_csv(source) if kind == "CSV" else pq.read_table(source, partitioning=None)
+        names = table.column_names
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
+        reason = str(error).splitlines()[0]
+        raise InputError(f"{source}: not a readable {kind} file ({reason})") from None
+    columns: dict[str, np.ndarray] = {}
+    for name, column in zip(names, table.columns, strict=True):
+        holds = column.type
+        if name in columns:
+            raise InputError(f"{source}: two columns are called {name!r}")
+        if not (pa.types.is_floating(holds) or pa.types.is_integer(holds) or pa.types.is_boolean(holds)):
+            raise InputError(f"{source}: column {name!r} holds {holds}, expected numbers")
+        # Nulls become NaN, which each reader judges. A copy: Arrow's memory may be read-only, for which
+        # compiled kernels would have to be compiled once more.
         values = column.to_numpy(zero_copy_only=False)
-        if column.null_count:
-            values = np.asarray(values, dtype=float)  # nulls become NaN, which each reader judges
-        columns[name] = values
-    stored = (table.schema.metadata or {}).get(META_KEY)
-    return columns, json.loads(stored) if stored else {}
+        columns[name] = np.array(values, dtype=float if column.null_count else None)
+    return columns, _meta(source, table)
+
+
+def _meta(source: Path, table: pa.Table) -> dict[str, Any]:
+    try:
+        meta = json.loads((table.schema.metadata or {}).get(META_KEY, b"{}"))
+    except ValueError:
+        meta = None
+    if not isinstance(meta, dict):
+        raise InputError(f"{source}: its metadata {META_KEY.decode()!r} is not a JSON object")
+    return meta
 
 
 def require_columns(source: str, columns: Columns, names: tuple[str, ...]) -> None:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from rich.console import Group
 
 from footfall.conventions import GRAVITY
 from footfall.models.imu import ImuUnit
 from footfall.pdr.allan import allan_deviation, fit_allan, suggest_bias_time
 from footfall.recording import Recording
+from footfall.scenarios.report import new_table, titled
 from footfall.simulate.record import record
 from footfall.simulate.walk import TrueFootfalls, Walk
 
@@ -34,7 +36,7 @@ def resting_recording(unit: ImuUnit, seconds: float, seed: int, rate_hz: float =
     return record(walk, unit, seed=seed)
 
 
-def allan_report(recording: Recording, figure: Path | None = None) -> dict[str, Any]:
+def allan_report(recording: Recording, figure: Path | None = None) -> dict[str, float]:
     """Angle random walk, bias floor and the suggested T_bias of the gyros of a resting recording.
 
     Raises
@@ -56,30 +58,31 @@ def allan_report(recording: Recording, figure: Path | None = None) -> dict[str, 
     return result
 
 
+def allan_table(report: Mapping[str, float]) -> Group:
+    """`allan_report` for people."""
+    table = new_table("", "")
+    table.add_row("rested", f"{report['duration_s'] / 60:.0f} min")
+    table.add_row("angle random walk", f"{report['angle_random_walk_deg_rt_h']:.3g} deg/sqrt(h)")
+    table.add_row("bias instability: floor of the deviation", f"{report['allan_floor_deg_h']:.3g} deg/h")
+    table.add_row("suggested time at rest, T_bias", f"{report['suggested_bias_time_s']:.1f} s", style="bold")
+    return titled("Gyros at rest, mean of the three axes", table)
+
+
 def _draw(recording: Recording, bias_time: float, white: float, path: Path) -> None:
-    from footfall.scenarios.figures import new_figure, save
+    from footfall.scenarios.figures import head, label_edges, new_panels, save
 
     interval = recording.interval
     longest = (recording.t[-1] - recording.t[0]) / 5
     tau = np.geomspace(10 * interval, longest, 40)
     deviation = np.degrees(allan_deviation(recording.gyro, interval, tau)) * 3600
-    figure, axes = new_figure(1, 1, 6.0, 3.8)
-    axis = axes[0, 0]
+    figure, (axis,) = new_panels(1, 6.0, 3.6)
     for i, (name, colour) in enumerate(zip("xyz", ("#c1440e", "#6a9f3a", "#1f6fb4"), strict=True)):
         axis.loglog(tau, deviation[:, i], color=colour, lw=1.4, label=f"gyro {name}")
-    axis.loglog(
-        tau, np.degrees(white / np.sqrt(tau)) * 3600, "--", color="#888888", lw=1, label="white noise alone"
+    noise = np.degrees(white / np.sqrt(tau)) * 3600
+    axis.loglog(tau, noise, "--", color="#888888", lw=1, label="white noise alone")
+    axis.axvline(
+        bias_time, color="#222222", lw=0.9, label=f"suggested $T_{{bias}}$ = {bias_time:.0f} s at rest"
     )
-    axis.axvline(bias_time, color="#222222", lw=0.9)
-    axis.annotate(
-        f"suggested $T_{{bias}}$ = {bias_time:.0f} s",
-        (bias_time, deviation.max()),
-        xytext=(4, -6),
-        textcoords="offset points",
-        va="top",
-        fontsize=8,
-    )
-    axis.set_xlabel("averaging time (s)")
-    axis.set_ylabel("Allan deviation (deg/h)")
-    axis.legend(fontsize=8)
+    label_edges([axis], "averaging time (s)", "Allan deviation (deg/h)")
+    head(figure, "Allan deviation of the gyros at rest", [axis])
     save(figure, path)

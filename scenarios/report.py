@@ -6,9 +6,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from rich.box import SIMPLE_HEAD
+from rich.console import Group, RenderableType
 from rich.table import Table
+from rich.text import Text
 
-from footfall.scenarios.paper import HDR_TABLE_2, HDR_TABLE_2_MEAN, PaperRow
+from footfall.scenarios.paper import HDR_TABLE_2, HDR_TABLE_2_MEAN
 from footfall.scenarios.run import Result
 from footfall.scenarios.score import Score, improvement, mean_score
 from footfall.simulate.journey import versions
@@ -76,71 +79,98 @@ def _duration(result: Result) -> float:
     return float(result.walk.footfalls.t[-1] - result.walk.footfalls.t[0])
 
 
-def heading_table(results: Sequence[Result]) -> Table:
+def run_report(name: str, results: Sequence[Result]) -> list[RenderableType]:
+    """What a run of the scenario `name` prints for people."""
+    first, distance = results[0].task, np.mean([_distance(result) for result in results])
+    count = "1 walk" if len(results) == 1 else f"{len(results)} walks"
+    parts: list[RenderableType] = [
+        Text.assemble((name, "bold"), f": {count} of {distance:.0f} m, IMU {first.imu}\n"),
+        heading_table(results),
+    ]
+    if name == "closed-loop":
+        parts.append(paper_table())
+        if first.scenario.units and first.unit_seed in first.scenario.units:
+            parts.append(Text(_CHOSEN_UNITS, style="dim"))
+    others = others_table(results)
+    return [*parts, *([others] if others else []), position_table(results)]
+
+
+_CHOSEN_UNITS = (
+    "The walks' own units were drawn from the sheet and kept because their uncorrected errors lie in the "
+    "range of the paper's Table 2; the other units below were not chosen."
+)
+
+
+def new_table(*columns: str, left: int = 1) -> Table:
+    """A table that stays readable on a terminal of 80 columns: its first `left` columns are text."""
+    table = Table(box=SIMPLE_HEAD, show_edge=False, show_header=any(columns))
+    for i, column in enumerate(columns):
+        table.add_column(column, justify="left" if i < left else "right", overflow="fold")
+    return table
+
+
+def titled(title: str, table: Table) -> Group:
+    """The table under its title, which may be the wider of the two, and a blank line."""
+    return Group(Text(title, style="bold"), table, Text())
+
+
+def heading_table(results: Sequence[Result]) -> Group:
     """The HDR paper's Table 2 for these walks: final and average heading error, and improvement."""
-    methods = list(results[0].scores)
-    table = Table(title="Heading error, final / average (deg)", title_justify="left")
-    table.add_column("")
-    for result in results:
-        table.add_column(f"Walk {result.task.number + 1}\nunit {result.task.unit_seed}", justify="right")
-    table.add_column("Mean", justify="right", style="bold")
-    columns = [result.scores for result in results]
-    means = {name: mean_score(scores) for name, scores in scores_by_method(columns).items()}
-    for name in methods:
-        label = "uncorrected (pdr)" if name == "pdr" else name
-        table.add_row(label, *(_pair(row[name]) for row in columns), _pair(means[name]))
-    if "pdr" in methods:
-        for name in methods:
-            if name != "pdr":
-                cells = [_factor(row["pdr"], row[name]) for row in [*columns, means]]
-                table.add_row(f"improvement, {name}", *cells, style="dim")
-    return table
+    rows = [result.scores for result in results]
+    means = {name: mean_score(scores) for name, scores in scores_by_method(rows).items()}
+    labels = ["pdr\n(uncorrected)" if name == "pdr" else name for name in means]
+    table = new_table("walk", "unit", *labels)
+    walks = [(str(result.task.number + 1), str(result.task.unit_seed)) for result in results]
+    for (walk, unit), row in zip([*walks, ("mean", "")], [*rows, means], strict=True):
+        cells = (_pair(score) + _gain(row, name) for name, score in row.items())
+        table.add_row(walk, unit, *cells, style="bold" if walk == "mean" else None)
+    compared = "pdr" in means and len(means) > 1
+    gain = "; x: times smaller than uncorrected" if compared else ""
+    return titled(f"Heading error, final / average (deg){gain}", table)
 
 
-def paper_table() -> Table:
+def paper_table() -> Group:
     """Table 2 of Borenstein et al. (2008), for comparison."""
-    table = Table(title="The paper's own walks: Borenstein et al. (2008), Table 2", title_justify="left")
-    table.add_column("")
-    rows: list[PaperRow] = [*HDR_TABLE_2, HDR_TABLE_2_MEAN]
-    for row in rows:
-        table.add_column("Mean" if row is HDR_TABLE_2_MEAN else row.name, justify="right")
-    table.add_row(
-        "uncorrected", *(f"{row.uncorrected.final:g} / {row.uncorrected.average:g}" for row in rows)
-    )
-    table.add_row("HDR", *(f"{row.hdr.final:g} / {row.hdr.average:g}" for row in rows))
-    improved = (f"{row.improvement.final:g}x / {row.improvement.average:g}x" for row in rows)
-    table.add_row("improvement", *improved, style="dim")
-    return table
+    table = new_table("walk", "pdr\n(uncorrected)", "hdr")
+    for row in (*HDR_TABLE_2, HDR_TABLE_2_MEAN):
+        mean = row is HDR_TABLE_2_MEAN
+        table.add_row(
+            "mean" if mean else row.name.removeprefix("Walk "),
+            f"{row.uncorrected.final:g} / {row.uncorrected.average:g}",
+            f"{row.hdr.final:g} / {row.hdr.average:g}\n"
+            f"{row.improvement.final:g}x / {row.improvement.average:g}x",
+            style="bold" if mean else None,
+        )
+    return titled("The paper's own walks: Borenstein et al. (2008), Table 2", table)
 
 
-def others_table(results: Sequence[Result]) -> Table | None:
+def others_table(results: Sequence[Result]) -> Group | None:
     """Spread over the other drawn units on the same walks; None when there are none."""
     others = scores_by_method([row for result in results for row in result.others])
     if not others:
         return None
     count = len(next(iter(others.values())))
-    table = Table(
-        title=f"{count} other units of the same sheet, drawn and not chosen, on the same walks (deg)",
-        title_justify="left",
-    )
-    table.add_column("")
-    for error in ("final", "average"):
-        for column in ("mean", "median", "p90"):
-            table.add_column(f"{error}\n{column}", justify="right")
+    columns = [f"{error}\n{column}" for error in ("final", "average") for column in ("mean", "median", "p90")]
+    table = new_table("", *columns)
     for name, scores in others.items():
         cells = []
         for key in _ERRORS:
             cells += [f"{value:.1f}" for value in spread([getattr(score, key) for score in scores]).values()]
         table.add_row(name, *cells)
-    return table
+    return titled(
+        f"{count} other units of the same sheet, drawn and not chosen, on the same walks (deg)", table
+    )
 
 
-def position_table(results: Sequence[Result]) -> Table:
+def position_table(results: Sequence[Result]) -> Group:
     """Distance and position errors, mean over the walks."""
-    table = Table(title="Position, mean over the walks", title_justify="left")
-    headings = ("", "distance error %", "return error %", "position RMSE m", "final position error m")
-    for heading in headings:
-        table.add_column(heading, justify="right" if heading else "left")
+    table = new_table(
+        "",
+        "distance\nerror %",
+        "return\nerror %",
+        "position\nRMSE m",
+        "final position\nerror m",
+    )
     for name, scores in scores_by_method([result.scores for result in results]).items():
         mean = mean_score(scores)
         table.add_row(
@@ -150,23 +180,34 @@ def position_table(results: Sequence[Result]) -> Table:
             f"{mean.position_rmse_m:.1f}",
             f"{mean.position_error_final_m:.1f}",
         )
-    return table
+    return titled("Position, mean over the walks", table)
 
 
-def score_table(scores: Mapping[str, Score]) -> Table:
-    """One column a track, one row a figure."""
-    table = Table("")
-    for name in scores:
-        table.add_column(name, justify="right")
-    for key in next(iter(scores.values())).as_dict():
-        table.add_row(key, *(f"{getattr(score, key):.3f}" for score in scores.values()))
-    return table
+_SCORE_LABELS = {
+    "heading_error_mean_deg": "heading error, mean (deg)",
+    "heading_error_final_deg": "heading error, final (deg)",
+    "return_error_pct": "return error (% of the distance)",
+    "distance_error_pct": "distance error (%)",
+    "position_rmse_m": "position error, RMS (m)",
+    "position_error_final_m": "position error, final (m)",
+}
+
+
+def score_table(score: Score) -> Group:
+    """One row a figure."""
+    table = new_table("", "")
+    for key, value in score.as_dict().items():
+        table.add_row(_SCORE_LABELS[key], f"{value:.3f}")
+    return titled("Errors, estimate against truth", table)
 
 
 def _pair(score: Score) -> str:
     return f"{score.heading_error_final_deg:.1f} / {score.heading_error_mean_deg:.1f}"
 
 
-def _factor(row_before: Score, row_after: Score) -> str:
-    factor = improvement(row_before, row_after)
-    return f"{factor.final:.1f}x / {factor.mean:.1f}x"
+def _gain(row: Mapping[str, Score], name: str) -> str:
+    """On a line of its own: how many times smaller than without correction, where that was scored."""
+    if name == "pdr" or "pdr" not in row:
+        return ""
+    factor = improvement(row["pdr"], row[name])
+    return f"\n{factor.final:.1f}x / {factor.mean:.1f}x"

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+import signal
+import threading
+from collections.abc import Callable, Generator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, wait
 from dataclasses import dataclass, replace
 from functools import partial
-from multiprocessing.managers import ValueProxy
+from typing import Any
 
-from footfall.hdr.methods import Reckoning, tracks
+from footfall.errors import InputError
+from footfall.hdr.methods import Reckoning, require_methods, tracks
 from footfall.models.imu import draw_unit, load_spec
 from footfall.pdr.pdr import StartPose
 from footfall.pdr.track import Track
@@ -19,11 +22,13 @@ from footfall.scenarios.scenario import Scenario
 from footfall.scenarios.score import Score, score
 from footfall.simulate.budget import DriftBudget
 from footfall.simulate.cache import cached_walk
-from footfall.simulate.record import record, record_with_budget
+from footfall.simulate.record import BIAS_TIME, record, record_with_budget
 from footfall.simulate.walk import Walk
 
 DEFAULT_METHODS = ("pdr", "hdr")
 OTHER_UNITS_FROM = 1000  # seeds of the units that are reported beside the scenario's own
+
+_done: Any = None  # in a worker: two numbers a task, what `perform` reports
 
 
 @dataclass(frozen=True)
@@ -32,7 +37,7 @@ class Task:
 
     Attributes
     ----------
-    scenario : a stock name or a TOML file; number : of the walk in the scenario
+    scenario : what to walk; number : of the walk in it, from 0
     walk_seed, unit_seed : of the walk (body, gait, wander) and of the IMU unit with its noise
     imu : stock name or data sheet
     methods : names
@@ -76,8 +81,12 @@ def start_pose(walk: Walk) -> StartPose:
     )
 
 
-def perform(task: Task, on_progress: Callable[[float], None] | None = None) -> Result:
+def perform(task: Task, on_progress: Callable[[float, int], None] | None = None) -> Result:
     """Walk one walk of a scenario, record it with its unit, navigate and score.
+
+    Parameters
+    ----------
+    on_progress : called now and then with the metres walked and which further unit is being scored (or 0)
 
     Raises
     ------
@@ -86,7 +95,9 @@ def perform(task: Task, on_progress: Callable[[float], None] | None = None) -> R
     """
     scenario = task.scenario
     plan = replace(scenario.plan(task.number), seed=task.walk_seed)
-    walk = cached_walk(plan, use_cache=task.use_cache, on_progress=on_progress)
+    report, length = on_progress or (lambda metres, units: None), plan.route.length
+    # The walker goes on for a few metres beyond the end, which are not part of the walk.
+    walk = cached_walk(plan, use_cache=task.use_cache, on_progress=lambda at: report(min(at, length), 0))
     spec = load_spec(task.imu)
     start = start_pose(walk)
 
@@ -95,7 +106,8 @@ def perform(task: Task, on_progress: Callable[[float], None] | None = None) -> R
     )
     made = tracks(Reckoning(recording, start), task.methods)
     others = []
-    for seed in task.others:
+    for count, seed in enumerate(task.others, start=1):
+        report(length, count)
         other = record(walk, draw_unit(spec, seed), seed=seed, temperature=scenario.temperature)
         found = tracks(Reckoning(other, start), task.methods)
         others.append({name: score(track, walk) for name, track in found.items()})
@@ -116,7 +128,19 @@ def tasks(
     """The walks of a run; arguments left out are the scenario's.
 
     `other_units` further units (seeds from 1000) are shared out over the walks.
+
+    Raises
+    ------
+    InputError
+        An unknown method or IMU; or the scenario stands still for too short a time before it walks.
     """
+    require_methods(methods)
+    load_spec(imu or scenario.imu)
+    if scenario.calibration < BIAS_TIME:
+        raise InputError(
+            f"{scenario.name}: sensor.calibration_s = {scenario.calibration:g}: "
+            f"a run averages the static bias over {BIAS_TIME:g} s at rest"
+        )
     count = scenario.walks if walks is None else walks
     base = scenario.seed if seed is None else seed
     own_sheet = imu is None or imu == scenario.imu
@@ -136,45 +160,62 @@ def tasks(
     ]
 
 
-Progress = Callable[[int, float], None]  # walk number, metres
+def _start_worker(done: Any) -> None:
+    """Take the shared array of progress, and end when the parent ends, however it does."""
+    global _done
+    _done = done
+
+    def follow() -> None:
+        parent = multiprocessing.parent_process()
+        assert parent is not None
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
 
 
-def _perform(task: Task, metres: ValueProxy[float] | None) -> Result:
-    def report(distance: float) -> None:
-        if metres is not None:
-            metres.value = distance
+def _perform(index: int, task: Task) -> Result:
+    def report(metres: float, units: int) -> None:
+        _done[2 * index], _done[2 * index + 1] = metres, units
 
     return perform(task, report)
 
 
-def perform_all(todo: Sequence[Task], on_progress: Progress | None = None) -> Iterator[Result]:
+def perform_all(
+    todo: Sequence[Task], on_progress: Callable[[int, float, int], None] | None = None
+) -> Generator[Result, None, None]:
     """Perform every task, one process a core, and yield results in order.
+
+    Where one task fails, or the generator is closed, the others are ended at once.
 
     Parameters
     ----------
-    on_progress : called about five times a second with each walk's number and its distance so far
+    on_progress : called about five times a second with each task's index and what `perform` reports
     """
-    workers = min(len(todo), os.cpu_count() or 1)
+    workers = min(len(todo), len(os.sched_getaffinity(0)))
     if workers <= 1:
-        for number, task in enumerate(todo):
-            yield perform(task, None if on_progress is None else partial(on_progress, number))
+        for index, task in enumerate(todo):
+            yield perform(task, None if on_progress is None else partial(on_progress, index))
         return
     # Spawned, not forked: threads of the physics and of numerical libraries do not survive a fork.
     context = multiprocessing.get_context("spawn")
-    with context.Manager() as manager, ProcessPoolExecutor(workers, mp_context=context) as pool:
-        metres = [manager.Value("d", 0.0) for _ in todo]
-        futures = [pool.submit(_perform, task, value) for task, value in zip(todo, metres, strict=True)]
+    done = context.RawArray("d", 2 * len(todo))
+    others = set(multiprocessing.active_children())
+    with ProcessPoolExecutor(workers, context, _start_worker, (done,)) as pool:
         try:
+            # Ctrl-C is the parent's to answer. Workers inherit that it is held back while they are started.
+            mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                futures = [pool.submit(_perform, index, task) for index, task in enumerate(todo)]
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, mask)
             for future in futures:
-                while True:
-                    try:
-                        result = future.result(timeout=0.2)
-                        break
-                    except TimeoutError:
-                        if on_progress is not None:
-                            for number, value in enumerate(metres):
-                                on_progress(number, value.value)
-                yield result
+                while not wait([future], timeout=0.2).done:
+                    if on_progress is not None:
+                        for index in range(len(todo)):
+                            on_progress(index, done[2 * index], int(done[2 * index + 1]))
+                yield future.result()
         except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
+            for worker in set(multiprocessing.active_children()) - others:
+                worker.terminate()
             raise

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from footfall.errors import InputError
-from footfall.tables import read_table, require_columns, write_table
+from footfall.tables import Columns, read_table, require_columns, write_table
 
 POSE = ("px", "py", "pz", "qw", "qx", "qy", "qz", "vx", "vy", "vz")
 GYRO = ("gyro_x", "gyro_y", "gyro_z")
@@ -116,34 +116,42 @@ def read_walk(path: str | os.PathLike[str]) -> Walk:
     Raises
     ------
     InputError
-        Missing file, columns or footfalls; values that are not finite.
+        Missing file, columns or footfalls; values that are not finite; times that do not increase.
     """
     columns, meta = read_table(path)
-    require_columns(str(path), columns, tuple(UNITS))
-    footfalls, _ = read_table(footfalls_path(path))
-    require_columns(str(footfalls_path(path)), footfalls, tuple(FOOTFALL_UNITS))
-
-    def stack(names: tuple[str, ...]) -> np.ndarray:
-        values = np.column_stack([columns[name] for name in names]).astype(float)
-        if not np.isfinite(values).all():
-            row, column = np.argwhere(~np.isfinite(values))[0]
-            raise InputError(f"{path}: {names[column]} is not finite at row {row}")
-        return values
-
-    pose = stack(POSE)
+    _require_rows(path, columns, ("t", *POSE, *GYRO, *ACCEL, "contact", "stance"))
+    beside = footfalls_path(path)
+    falls, _ = read_table(beside)
+    _require_rows(beside, falls, tuple(FOOTFALL_UNITS))
     return Walk(
-        t=stack(("t",))[:, 0],
-        position=pose[:, :3],
-        quaternion=pose[:, 3:7],
-        velocity=pose[:, 7:],
-        gyro=stack(GYRO),
-        accel=stack(ACCEL),
-        contact=stack(("contact",))[:, 0],
+        t=columns["t"],
+        position=_stack(columns, POSE[:3]),
+        quaternion=_stack(columns, POSE[3:7]),
+        velocity=_stack(columns, POSE[7:]),
+        gyro=_stack(columns, GYRO),
+        accel=_stack(columns, ACCEL),
+        contact=columns["contact"],
         stance=columns["stance"].astype(bool),
         footfalls=TrueFootfalls(
-            t=footfalls["t"],
-            position=np.column_stack([footfalls[axis] for axis in "xyz"]),
-            heading=footfalls["heading"],
+            t=falls["t"], position=_stack(falls, ("x", "y", "z")), heading=falls["heading"]
         ),
         meta=meta,
     )
+
+
+def _stack(columns: Columns, names: tuple[str, ...]) -> np.ndarray:
+    # In memory as a walk that comes from the simulator, so that the same bits come out of it.
+    return np.column_stack([columns[name] for name in names]).astype(float)
+
+
+def _require_rows(path: str | os.PathLike[str], columns: Columns, names: tuple[str, ...]) -> None:
+    """Refuse missing columns, numbers that are not finite, and times (the first of `names`) out of order."""
+    require_columns(str(path), columns, names)
+    for name in names:
+        if not np.isfinite(columns[name]).all():
+            raise InputError(
+                f"{path}: {name} is not finite at row {int(np.argmin(np.isfinite(columns[name])))}"
+            )
+    t = columns[names[0]]
+    if len(t) < 2 or (np.diff(t) <= 0).any():
+        raise InputError(f"{path}: expected at least two rows with increasing {names[0]}")

@@ -1,0 +1,94 @@
+"""What every command shares: where its words go, what it may write, and how its mistakes are told."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import typer
+from rich.console import Console
+
+from footfall.errors import InputError
+
+OUT = Console()
+ERR = Console(stderr=True)
+INTERRUPTED = 130  # as shells have it
+
+# Of what typer raises for wrong arguments; which library the class comes from depends on its version.
+_USAGE_ERROR: type[BaseException] = typer.BadParameter.__mro__[1]
+
+
+def print_json(document: Any) -> None:
+    """The one document on standard output."""
+    print(json.dumps(document, indent=2, allow_nan=False))
+
+
+def say(text: str) -> None:
+    """A line for people, on standard error."""
+    ERR.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def finite(value: float | None) -> float | None:
+    """Callback of options that are numbers: neither NaN nor infinite."""
+    if value is not None and not math.isfinite(value):
+        raise typer.BadParameter(f"{value} is not a finite number")
+    return value
+
+
+@contextmanager
+def blaming(file: Path | str, part: str = "recording") -> Iterator[None]:
+    """Name the file in what is said of the `part` that was read from it."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{file}: {str(error).removeprefix(f'{part}: ')}") from None
+
+
+def require_output(file: Path, ending: str, *inputs: Path) -> None:
+    """Refuse a file that cannot or must not be written before any work is done.
+
+    Raises
+    ------
+    InputError
+        Another ending, a folder, no folder to write into, or one of `inputs`.
+    """
+    if file.suffix.lower() != ending:
+        raise InputError(f"{file}: expected a name that ends in {ending}")
+    if file.is_dir():
+        raise InputError(f"{file}: a folder, expected a file to write")
+    if not file.parent.is_dir():
+        raise InputError(f"{file}: the folder {file.parent} does not exist")
+    if not os.access(file.parent, os.W_OK):
+        raise InputError(f"{file}: the folder {file.parent} cannot be written")
+    for source in inputs:
+        if file.exists() and source.exists() and file.samefile(source):
+            raise InputError(f"{file}: would overwrite what it is made from")
+
+
+def perform(app: typer.Typer, arguments: list[str] | None) -> int:
+    """Run a command line, tell each mistake in one sentence, and return the exit code."""
+    try:
+        code = int(app(arguments, standalone_mode=False, prog_name="footfall") or 0)
+    except InputError as error:
+        return _refuse(str(error))
+    except OSError as error:  # a full disk, say
+        return _refuse(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+    except (typer.Abort, KeyboardInterrupt):  # either, by typer's version
+        code = INTERRUPTED
+    except _USAGE_ERROR as error:
+        command = getattr(getattr(error, "ctx", None), "command_path", "footfall")
+        return _refuse(f"{error.format_message().rstrip('.')} (see `{command} --help`)")  # type: ignore[attr-defined]
+    if code == INTERRUPTED:
+        print("footfall: interrupted", file=sys.stderr)
+    return code
+
+
+def _refuse(sentence: str) -> int:
+    print(f"footfall: {sentence}", file=sys.stderr)
+    return 2

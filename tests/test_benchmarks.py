@@ -1,0 +1,215 @@
+"""The benchmarks run, and what they compute is what they say."""
+
+import importlib
+import json
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from footfall.hdr.hdr import HdrParams, headings
+from footfall.hdr.methods import Reckoning, hdr_track, pdr_track
+from footfall.models.imu import draw_unit, load_spec
+from footfall.scenarios.run import start_pose
+from footfall.scenarios.scenario import load_scenario
+from footfall.scenarios.score import compare, score
+from footfall.simulate.journey import FallError
+from footfall.simulate.record import record
+from footfall.simulate.walk import TrueFootfalls
+
+FOLDER = Path(__file__).resolve().parents[1] / "benchmarks"
+
+SCENARIO = """
+description = "a corner and a slope"
+subjects = ["reference"]
+[path]
+vertical_transition_m = 4.0
+elements = [
+  { kind = "straight", length_m = 10.0 },
+  { kind = "corner", turn_deg = 60.0, radius_m = 2.5 },
+  { kind = "straight", length_m = 6.0 },
+  { kind = "straight", length_m = 6.0, grade_percent = 2.0 },
+  { kind = "straight", length_m = 6.0 },
+]
+[gait]
+pace_m_s = 1.3
+[temperature]
+indoors_degC = 20.0
+outdoors_degC = -5.0
+[sensor]
+imu = "nimu"
+calibration_s = 26.0
+[seeds]
+base = 1
+walks = 2
+units = [7, 8]
+"""
+
+
+@pytest.fixture
+def scripts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> SimpleNamespace:
+    """The benchmarks as modules, by name; walks are cached in a folder of their own."""
+    monkeypatch.syspath_prepend(str(FOLDER))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    names = ("_common", "hdr_table2", "imu_truth", "robustness", "stock_units", "walker_speed")
+    return SimpleNamespace(**{name: importlib.import_module(name) for name in names})
+
+
+@pytest.fixture
+def short(tmp_path: Path) -> str:
+    """A scenario that is walked in half a minute."""
+    path = tmp_path / "short.toml"
+    path.write_text(SCENARIO, encoding="utf-8")
+    return str(path)
+
+
+def test_imu_truth_runs_and_meets_its_targets(scripts, short: str, tmp_path: Path) -> None:
+    out = tmp_path / "out.json"
+    scripts.imu_truth.main(["--scenario", short, "--metres", "12", "--processes", "1", "--json", str(out)])
+    errors = {error["rate_hz"]: error for error in json.loads(out.read_text())["errors"]}
+    assert errors[1000.0]["largest_mm"] < 1
+    assert errors[200.0]["largest_mm"] < 2
+
+
+def test_walker_speed_accounts_for_every_second(scripts, short: str, tmp_path: Path) -> None:
+    """That MuJoCo alone repeats the walk to the last bit is checked inside."""
+    out = tmp_path / "out.json"
+    scripts.walker_speed.main(["--scenario", short, "--metres", "8", "--json", str(out)])
+    found = json.loads(out.read_text())["cpu_s"]
+    assert set(found) == {"level", "heightfield"}
+    labels = {label for label, _, _ in scripts.walker_speed.WATCHED} | {scripts.walker_speed.REST}
+    for row in found.values():
+        assert all(row[label] > 0 for label in labels)
+        assert sum(row[label] for label in labels) == pytest.approx(row["whole"])
+        assert row["share in MuJoCo"] == pytest.approx(row["MuJoCo"] / row["whole"])
+
+
+def test_errors_of_a_batch_are_the_scores_of_its_tracks(scripts, short_walk) -> None:
+    recording = record(short_walk, draw_unit(load_spec("nimu"), 3), seed=3)
+    footfalls = Reckoning(recording, start_pose(short_walk)).footfalls
+    case = scripts._common.Case(1, 3, footfalls, compare(pdr_track(footfalls), short_walk).heading_error)
+    sets = [HdrParams(), HdrParams.from_degrees(i_c_deg_s=0.02, theta_w_deg_s=1.0)]
+
+    def judged(track) -> list[float]:
+        found = score(track, short_walk)
+        return [found.heading_error_final_deg, found.heading_error_mean_deg]
+
+    np.testing.assert_allclose(case.uncorrected_deg(), judged(pdr_track(footfalls)), atol=1e-9)
+    expected = [judged(hdr_track(footfalls, params)) for params in sets]
+    np.testing.assert_allclose(case.corrected_deg(headings([footfalls], sets)[0]), expected, atol=1e-9)
+
+
+def test_hdr_is_tuned_and_judged_on_different_walks_and_units(scripts, short: str, tmp_path: Path) -> None:
+    out, figure = tmp_path / "out.json", tmp_path / "figure.png"
+    few = ["--walks", "2", "--units", "4", "--tuning-walks", "1", "--tuning-units", "3", "--processes", "1"]
+    scripts.hdr_table2.main([short, *few, "--json", str(out), "--figure", str(figure)])
+    document = json.loads(out.read_text())
+    grid = np.array(document["tuning_average_deg"])
+    assert grid.shape == (len(document["i_c_deg_s"]), len(document["theta_w_deg_s"]))
+    groups = document["judged"]["short"]
+    assert groups["all units drawn"]["count"] == 4
+    assert groups["the scenario's own"]["count"] == 2
+    assert figure.stat().st_size > 10_000
+
+    row, column = np.unravel_index(np.argmin(grid), grid.shape)
+    theta_w = document["theta_w_deg_s"][column]
+    best = HdrParams.from_degrees(
+        i_c_deg_s=document["i_c_deg_s"][row], theta_w_deg_s=np.inf if theta_w is None else theta_w
+    )
+    assert document["chosen"] == scripts.hdr_table2.name_of(best)
+
+
+@pytest.mark.parametrize("clash", [["--tuning-unit-seed", "1003"], ["--tuning-walk-seed", "2"]])
+def test_a_seed_on_both_sides_is_refused(scripts, short: str, clash: list[str]) -> None:
+    with pytest.raises(SystemExit, match="share"):
+        scripts.hdr_table2.main([short, "--units", "4", *clash])
+
+
+@given(st.data())
+def test_units_are_kept_by_the_stated_rule(data: st.DataObject) -> None:
+    sys.path.insert(0, str(FOLDER))
+    try:
+        stock_units = importlib.import_module("stock_units")
+    finally:
+        sys.path.remove(str(FOLDER))
+    errors = st.tuples(st.floats(60, 350), st.floats(20, 160))
+    drawn = [
+        stock_units.judge(unit, unit % 5, np.array(data.draw(errors)), 5)
+        for unit in range(data.draw(st.integers(1, 40)))
+    ]
+    kept = stock_units.keep(drawn)
+    assert len({one.walk for one in kept}) == len({one.part for one in kept}) == len(kept)
+    for one in drawn:
+        assert one.fits == (102 <= one.final <= 307 and 34 <= one.average <= 145)
+        before = [other for other in kept if other.unit < one.unit]
+        free = all(other.walk != one.walk and other.part != one.part for other in before)
+        assert (one in kept) == (one.fits and free)
+
+
+def test_units_that_do_not_fit_are_not_kept(scripts, short: str, tmp_path: Path) -> None:
+    """Half a minute of drift is far below the paper's."""
+    out = tmp_path / "out.json"
+    arguments = ["--scenario", short, "--units", "2", "--most", "4", "--processes", "1", "--json", str(out)]
+    assert scripts.stock_units.main(arguments) == 1
+    document = json.loads(out.read_text())
+    assert document["kept"] == []
+    assert [(one["unit"], one["walk"]) for one in document["drawn"]] == [(0, 0), (1, 1), (2, 0), (3, 1)]
+
+
+def test_robustness_reads_a_known_gait(scripts, short: str) -> None:
+    """Footfalls laid beside the route by hand, with a known sway, stance yaw and rhythm."""
+    plan = load_scenario(short).plan(0)
+    route = plan.route
+    rows = np.arange(0, len(route.s), int(1.3 / (route.s[1] - route.s[0])))
+    sway = 0.05 * np.where(np.arange(len(rows)) % 2, 1, -1)
+    aside = np.column_stack([-np.sin(route.heading[rows]), np.cos(route.heading[rows])])
+    position = np.column_stack([route.x[rows], route.y[rows]]) + (sway - 0.1)[:, None] * aside
+    yaw = np.radians(2) * np.where(np.arange(len(rows)) % 2, 1, -1)
+    falls = TrueFootfalls(1.1 * np.arange(len(rows)), position, route.heading[rows] + yaw + 0.1)
+    found = scripts.robustness.gait(plan, falls)
+    assert found.stride_s == pytest.approx(1.1)
+    assert found.stride_sd_ms == pytest.approx(0, abs=1e-9)
+    assert found.stance_yaw_sd_deg == pytest.approx(2, rel=0.05)
+    assert found.lateral_rms_m == pytest.approx(0.05, rel=0.05)
+
+
+def test_a_fall_is_reported_and_not_averaged(
+    scripts, short: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    walked = scripts.robustness.walk
+
+    def falls_with_seed_2(plan):
+        if plan.seed == 2:
+            raise FallError("short: the walker fell at 17 m")
+        return walked(plan)
+
+    monkeypatch.setattr(scripts.robustness, "walk", falls_with_seed_2)
+    out = tmp_path / "out.json"
+    scripts.robustness.main([short, "--seeds", "2", "--no-cache", "--processes", "1", "--json", str(out)])
+    printed = capsys.readouterr().out
+    assert "1 of 2" in printed
+    assert "seed 2: short: the walker fell at 17 m" in printed
+    good, bad = json.loads(out.read_text())["walks"]
+    assert 1.0 < good["speed_m_s"] < 1.5
+    assert bad["stumble"]
+    assert "speed_m_s" not in bad
+
+
+def test_a_script_runs_from_the_shell_over_two_processes(short: str, tmp_path: Path) -> None:
+    command = [
+        sys.executable,
+        str(FOLDER / "robustness.py"),
+        short,
+        "--seeds",
+        "2",
+        "--metres",
+        "10",
+        "--no-cache",
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)
+    assert "2 of 2" in done.stdout
