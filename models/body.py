@@ -285,9 +285,9 @@ def _add_leg(pelvis: mujoco.MjsBody, side: str, build: Build) -> None:
 
     def joints(body: mujoco.MjsBody, *names: str) -> None:
         for name in names:
-            axis, *rest = _LEG_AXES[name]
+            axis, limits, damping, armature, stiffness = _LEG_AXES[name]
             mirrored = axis if side == "r" else (-axis[0], axis[1], -axis[2])
-            _joint(body, f"{name}_{side}", mirrored, *rest)
+            _joint(body, f"{name}_{side}", mirrored, limits, damping, armature, stiffness)
 
     thigh = pelvis.add_body(name=f"thigh_{side}", pos=[0, sign * HIP_HALF_WIDTH * build.hip_width, -0.06])
     inertia = np.array([0.144, 0.144, 0.03]) * build.leg_mass

@@ -1,8 +1,8 @@
 """The reference gait: normative joint curves of level walking, scaled with speed.
 
-Curves of hip flexion, knee, ankle and hip adduction over one stride (0 = heel strike of that leg), rounded from
-normative data (Winter; Perry & Burnfield). The hip is shifted by the pelvic tilt and the ankle was adjusted so
-that forward kinematics put the foot flat from 10 to 40 % of the stride.
+Curves of hip flexion, knee, ankle and hip adduction over one stride (0 = heel strike of that leg), rounded
+from normative data (Winter; Perry & Burnfield). The hip is shifted by the pelvic tilt and the ankle was
+adjusted so that forward kinematics put the foot flat from 10 to 40 % of the stride.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ SPREAD = mask("hip_adduction") - mask("subtalar")
 
 
 def stride_frequency(speed: np.ndarray) -> np.ndarray:
-    """Strides a second at `speed` (m/s) of the 1.75 m body; slower than 0.7 m/s the steps get short instead."""
+    """Strides a second at `speed` (m/s) of the 1.75 m body; below 0.7 m/s the steps get short instead."""
     return 0.92 * (np.maximum(speed, 0.7) / 1.25) ** 0.45
 
 

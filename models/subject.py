@@ -1,8 +1,8 @@
 """Who walks: stature, mass and habits, and what the simulated body makes of them.
 
-The physics always moves a body of 1.75 m. A person of height H is dynamically similar to it: lengths scale with
-s = H / 1.75 m, times with sqrt(s), forces with the mass, and specific force not at all, so the walk of the
-1.75 m body is stretched by s in space and by sqrt(s) in time (exact under gravity: equal Froude numbers).
+The physics always moves a body of 1.75 m. A person of height H is dynamically similar to it: lengths scale
+with s = H / 1.75 m, times with sqrt(s), forces with the mass, and specific force not at all, so the walk of
+the 1.75 m body is stretched by s in space and by sqrt(s) in time (exact under gravity: equal Froude numbers).
 What stature does not explain, the mass for it, changes the body's build.
 """
 

@@ -156,5 +156,6 @@ def _draw_path(scene: object, plan: Plan, x: float, y: float) -> None:
 
 def _draw_prints(scene: object, prints: deque[np.ndarray]) -> None:
     for place in prints:
-        ground = place[:3] + [0.05 * np.cos(place[3]), 0.05 * np.sin(place[3]), 0.003 - body.ANKLE_HEIGHT]
+        forward = np.array([np.cos(place[3]), np.sin(place[3]), 0.0])
+        ground = place[:3] + 0.05 * forward - np.array([0, 0, body.ANKLE_HEIGHT - 0.003])
         _add(scene, mujoco.mjtGeom.mjGEOM_BOX, [0.12, 0.042, 0.001], ground, place[3], [0.42, 0.4, 0.38, 1])

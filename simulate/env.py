@@ -186,8 +186,9 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
 
     Observation: Box(-6, 6, (82,), float32), mirrored so that the stance leg is always the right one: height,
     gravity in the pelvis, velocities, joint angles and rates, foot pressure, step phase, commands, residual,
-    grade, gait variability, gate of standing. Action: Box(-1, 1, (15,), float32), residual on the joint servos' targets, held for
-    30 ms. Reward: `simulate.reward`. A fall terminates; the time limit (10 s) truncates.
+    grade, gait variability, gate of standing. Action: Box(-1, 1, (15,), float32), residual on the joint
+    servos' targets, held for 30 ms. Reward: `simulate.reward`. A fall terminates; the time limit (10 s)
+    truncates.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ from footfall.models.gait import INDEX
 
 
 def _mirror(names: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
-    """Permutation and signs that mirror a per-joint vector: legs change sides, lumbar roll and yaw their sign."""
+    """Permutation and signs that mirror a per-joint vector."""
     swapped = [
         name[:-1] + {"r": "l", "l": "r"}[name[-1]] if name[-2:] in ("_r", "_l") else name for name in names
     ]
@@ -88,7 +88,8 @@ class Balance:
     """What the feedback looks at, all (n,), in the heading frame and mirrored to right stance.
 
     pitch (nose down positive) and roll are relative to gravity, yaw_error to the commanded heading;
-    `foot_y` is the pelvis relative to the stance foot (m); `step_phase` runs 0..1 over a step; `speed` is commanded.
+    `foot_y` is the pelvis relative to the stance foot (m); `step_phase` runs 0..1 over a step; `speed` is the
+    commanded one.
     """
 
     pitch: np.ndarray

@@ -148,8 +148,6 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
     subject, small = plan.subject, _shrunk(replace(plan, route=_with_run_out(plan.route)))
     route, step = small.route, PHYSICS_STEP / subject.time_scale
     model = build_body(subject.build, timestep=step, mount=plan.mount, ground=small.ground)
-    # A standing foot would creep downhill by millimetres a second without it.
-    model.opt.noslip_iterations = NOSLIP_ITERATIONS
     walkers = Walkers(
         [model],
         policy.feedback_gains,
@@ -190,6 +188,8 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
             action = policy(walkers.observe())
             if plan.action_noise:
                 action = action + plan.action_noise * noise.standard_normal((1, N_ACTION))
+            # A standing foot would creep downhill by millimetres a second without it; walking does not need it.
+            model.opt.noslip_iterations = NOSLIP_ITERATIONS if standing else 0
             trace = walkers.step(action)
             at = pursuit.progress * subject.scale
             if walkers.fallen()[0]:

@@ -84,7 +84,7 @@ class Learner:
 
         Returns
         -------
-        batch : (HORIZON, n, ...) observations, actions, log probabilities, advantages, returns, and statistics
+        batch : (HORIZON, n, ...) observations, actions, log probabilities, advantages, returns; statistics
         observation : to continue from
         """
         n = env.num_envs

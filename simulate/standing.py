@@ -1,8 +1,8 @@
 """Standing still, and when to stop and go.
 
-A standing controller (ankles and hips about the pose in which the feet stopped) is blended with the gait by a
-gate: 0 stands, 1 walks. Stopping waits for a step from which the body can be captured (its extrapolated centre
-of mass stays over the feet); until then it steps on the spot. A stand that loses its balance steps again.
+A standing controller (ankles and hips about the pose in which the feet stopped) is blended with the gait by
+a gate: 0 stands, 1 walks. Stopping waits for a step from which the body can be captured (its extrapolated
+centre of mass stays over the feet); until then it steps on the spot. A stand that loses its balance steps.
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ def stand_of(
         grade_left=grade_left,
         stagger=apart[:, 0],
         width=apart[:, 1],
-        loaded=(force > _LOADED).all(axis=1),
+        loaded=np.asarray((force > _LOADED).all(axis=1)),
     )
 
 

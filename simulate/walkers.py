@@ -1,8 +1,8 @@
 """N walkers side by side: their state and the control step (33 a second) over the physics.
 
 The reference gait (models.gait) plus balance feedback plus a learned residual sets the targets of the joint
-servos, which are interpolated over the physics steps. No other input acts on a body. Everything is in the units
-of the 1.75 m body (models.subject).
+servos, which are interpolated over the physics steps. No other input acts on a body. Everything is in the
+units of the 1.75 m body (models.subject).
 """
 
 from __future__ import annotations
