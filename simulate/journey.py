@@ -188,7 +188,7 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
             action = policy(walkers.observe())
             if plan.action_noise:
                 action = action + plan.action_noise * noise.standard_normal((1, N_ACTION))
-            # A standing foot would creep downhill by millimetres a second without it; walking does not need it.
+            # Without it a standing foot creeps downhill by millimetres a second; walking does not need it.
             model.opt.noslip_iterations = NOSLIP_ITERATIONS if standing else 0
             trace = walkers.step(action)
             at = pursuit.progress * subject.scale

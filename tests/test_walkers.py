@@ -178,7 +178,7 @@ def test_asymmetry_makes_one_step_quicker_than_the_other() -> None:
 
 @pytest.mark.parametrize("grade", [0.0, 0.05, 0.08])
 def test_standing_stands(grade: float) -> None:
-    """Ten seconds on any slope: no fall, no step, and feet that turn by less than 0.1 deg/s and do not creep."""
+    """Ten seconds on any slope: no fall, no step, and feet that neither turn (0.1 deg/s) nor creep."""
     azimuth = np.linspace(0, 2 * np.pi, 6, endpoint=False)
     up = np.column_stack([grade * np.cos(azimuth), grade * np.sin(azimuth), np.ones(6)])
     up /= np.linalg.norm(up, axis=1)[:, None]
