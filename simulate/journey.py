@@ -31,6 +31,7 @@ from footfall.streams import stream
 PHYSICS_STEP = 0.001  # s, of the subject's time
 SUBSTEPS = 30  # physics steps of a control step
 NOSLIP_ITERATIONS = 4
+SETTLE_S = 8.0  # of standing before the record begins: its motion would end up in the static bias
 _RUN_OUT = 8.0  # m
 _SLOWEST = 0.35  # m/s; a walk that takes longer than this has got stuck
 
@@ -48,7 +49,6 @@ class Plan:
     name : of the scenario, for messages and provenance
     route : where to walk; ground : level when None
     pace : m/s commanded on straights
-    stops : where to stand on the way, and for how long
     variability : of the gait, 1 = that of people; action_noise : SD of the noise on the policy's action
     wander, wander_time : m and s, slow lateral wander of the aim
     calibration : s of standing before the first step
@@ -61,7 +61,6 @@ class Plan:
     mount: Mount = field(default_factory=Mount)
     ground: Ground | None = None
     pace: float = 1.3
-    stops: tuple[Stop, ...] = ()
     variability: float = 1.0
     action_noise: float = 0.0
     wander: float = 0.0
@@ -94,7 +93,6 @@ def _shrunk(plan: Plan) -> Plan:
         route=small,
         ground=ground,
         pace=plan.pace / t,
-        stops=tuple(Stop(stop.distance / s, stop.duration / t) for stop in plan.stops),
         wander=plan.wander / s,
         wander_time=plan.wander_time / t,
         calibration=plan.calibration / t,
@@ -158,7 +156,7 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
     pursuit = Pursuit(
         route,
         small.pace,
-        (Stop(0.0, small.calibration), *small.stops),
+        (Stop(0.0, small.calibration + SETTLE_S / subject.time_scale),),
         wander=small.wander,
         wander_time=small.wander_time,
         dt=SUBSTEPS * step,
@@ -174,7 +172,7 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
         variability=np.array([plan.variability]),
         habits=[subject.habits],
     )
-    waiting = small.calibration + sum(stop.duration + 10 for stop in small.stops) + 20
+    waiting = small.calibration + SETTLE_S + 20
     limit = int((route.length / _SLOWEST + waiting) / (SUBSTEPS * step))
     try:
         for count in range(limit):
@@ -215,7 +213,7 @@ def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | 
         weight = float(sum(moment.walkers.models[0].body_mass)) * GRAVITY
         if on_progress is not None and count % 100 == 0:
             on_progress(moment.progress)
-    record = np.concatenate(chunks)
+    record = np.concatenate(chunks)[round(SETTLE_S / PHYSICS_STEP) :]
     if not np.isfinite(record).all():
         raise FallError(f"{plan.name}: the physics is no longer finite (seed {plan.seed})")
     return _Record(record[:, :3] * plan.subject.scale, record[:, 3:7], record[:, 7] / weight)

@@ -1,7 +1,7 @@
 """What keeps the gait from being a metronome: seeded scatter of timing, step length, width and toe-out.
 
 Per step: cadence N(0, 2.6 %) plus a slow AR(1) part (1.3 %, rho 0.9), hip excursion N(0, 3 %), step width
-AR(1) about 1 cm, toe-out of the landing foot N(0, 2 deg); each slews within 120 ms. A person's habits shift
+AR(1) about 1 cm, toe-out of the landing foot N(0, 1.2 deg); each slews within 120 ms. A person's habits shift
 the means.
 """
 
@@ -14,7 +14,7 @@ from footfall.models.subject import Habits
 CADENCE_SD, CADENCE_SLOW_SD, CADENCE_SLOW_RHO = 0.026, 0.013, 0.9
 AMPLITUDE_SD = 0.03
 WIDTH_SD, WIDTH_RHO = 0.010, 0.5
-TOE_OUT_SD = np.radians(2.0)
+TOE_OUT_SD = np.radians(1.2)
 _SLEW_S = 0.12
 # columns of `value`
 CADENCE, AMPLITUDE, WIDTH, TOE_OUT = 0, 1, 2, slice(3, 5)

@@ -101,12 +101,12 @@ class Walkers:
     ) -> None:
         n = len(models)
         self.n, self.models, self.gains, self.rng, self.ground = n, list(models), gains, rng, ground
-        timestep = models[0].opt.timestep
-        self.substeps = max(1, round(CONTROL_INTERVAL / timestep))
-        self.dt = self.substeps * np.array([model.opt.timestep for model in models])
+        timesteps = np.array([model.opt.timestep for model in models])
+        self.substeps = max(1, round(CONTROL_INTERVAL / timesteps.mean()))
+        self.dt = self.substeps * timesteps
         if np.abs(self.dt / CONTROL_INTERVAL - 1).max() > 0.1:
             raise ValueError(
-                f"{self.substeps} physics steps of {timestep} s are no control interval of "
+                f"{self.substeps} physics steps of {timesteps.max():.4g} s are no control interval of "
                 f"{CONTROL_INTERVAL} s (10 % off at the most)"
             )
         self._data = [mujoco.MjData(models[0]) for _ in range(max(1, threads))]
