@@ -29,7 +29,7 @@ def cache_folder() -> Path:
 def _source_digest() -> str:
     """Hash of the code that makes walks, so that a developer's change is never answered from the cache."""
     digest = hashlib.sha256()
-    rooms = [Path(footfall.models.__file__).parent, Path(__file__).parent]
+    rooms = [Path(footfall.models.__file__).parent, Path(__file__).parent, Path(footfall.__file__).parent]
     for source in sorted(path for room in rooms for path in room.glob("*.py")):
         digest.update(source.name.encode() + source.read_bytes())
     return digest.hexdigest()

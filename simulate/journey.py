@@ -30,8 +30,7 @@ from footfall.streams import stream
 
 PHYSICS_STEP = 0.001  # s, of the subject's time
 SUBSTEPS = 30  # physics steps of a control step
-NOSLIP_ITERATIONS = 4
-SETTLE_S = 8.0  # of standing before the record begins: its motion would end up in the static bias
+STAND_S = 4.0  # of standing, to come to rest, before the record begins
 _RUN_OUT = 8.0  # m
 _SLOWEST = 0.35  # m/s; a walk that takes longer than this has got stuck
 
@@ -51,7 +50,7 @@ class Plan:
     pace : m/s commanded on straights
     variability : of the gait, 1 = that of people; action_noise : SD of the noise on the policy's action
     wander, wander_time : m and s, slow lateral wander of the aim
-    calibration : s of standing before the first step
+    calibration : s motionless before the first step
     rate_hz : of the truth; divides 1 kHz
     """
 
@@ -95,7 +94,6 @@ def _shrunk(plan: Plan) -> Plan:
         pace=plan.pace / t,
         wander=plan.wander / s,
         wander_time=plan.wander_time / t,
-        calibration=plan.calibration / t,
     )
 
 
@@ -156,7 +154,7 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
     pursuit = Pursuit(
         route,
         small.pace,
-        (Stop(0.0, small.calibration + SETTLE_S / subject.time_scale),),
+        (Stop(0.0, STAND_S / subject.time_scale),),
         wander=small.wander,
         wander_time=small.wander_time,
         dt=SUBSTEPS * step,
@@ -172,7 +170,7 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
         variability=np.array([plan.variability]),
         habits=[subject.habits],
     )
-    waiting = small.calibration + SETTLE_S + 20
+    waiting = STAND_S + 20
     limit = int((route.length / _SLOWEST + waiting) / (SUBSTEPS * step))
     try:
         for count in range(limit):
@@ -186,8 +184,6 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
             action = policy(walkers.observe())
             if plan.action_noise:
                 action = action + plan.action_noise * noise.standard_normal((1, N_ACTION))
-            # Without it a standing foot creeps downhill by millimetres a second; walking does not need it.
-            model.opt.noslip_iterations = NOSLIP_ITERATIONS if standing else 0
             trace = walkers.step(action)
             at = pursuit.progress * subject.scale
             if walkers.fallen()[0]:
@@ -213,7 +209,11 @@ def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | 
         weight = float(sum(moment.walkers.models[0].body_mass)) * GRAVITY
         if on_progress is not None and count % 100 == 0:
             on_progress(moment.progress)
-    record = np.concatenate(chunks)[round(SETTLE_S / PHYSICS_STEP) :]
+    record = np.concatenate(chunks)[round(STAND_S / PHYSICS_STEP) :]
+    # The static bias is taken from the same unit held motionless in this pose (HDR paper, section 2): the
+    # simulated stand turns by a few thousandths of a degree a second, degrees over a walk.
+    still = np.repeat(record[:1], round(plan.calibration / PHYSICS_STEP), axis=0)
+    record = np.concatenate([still, record])
     if not np.isfinite(record).all():
         raise FallError(f"{plan.name}: the physics is no longer finite (seed {plan.seed})")
     return _Record(record[:, :3] * plan.subject.scale, record[:, 3:7], record[:, 7] / weight)

@@ -21,7 +21,11 @@ def bad(here):
     scenario("broken", "[path]", "[path")
     scenario("typo", "pace_m_s = 1.3", "pace_m_s = 1.3\nvariabilty = 0.5")
     scenario("nan", "pace_m_s = 1.3", "pace_m_s = nan")
-    scenario("tight", "radius_m = 2.5", "radius_m = 1.0")
+    scenario(
+        "tight",
+        'kind = "corner", turn_deg = 90.0, radius_m = 2.5',
+        'kind = "arc", turn_deg = 90.0, radius_m = 1.0',
+    )
     scenario("rate", "calibration_s = 26.0", "rate_hz = 300")
     scenario("brief", "calibration_s = 26.0", "calibration_s = 10.0")
     scenario("sheetless", 'imu = "nimu"', 'imu = "nimo"')
@@ -91,7 +95,7 @@ REFUSED = [
         "typo.toml: unknown key 'gait.variabilty' = 0.5",
     ),
     ("walk nan.toml -o w.parquet", "nan.toml: gait.pace_m_s = nan: .*finite"),
-    ("run tight.toml", r"tight.toml: path.elements.1.radius_m = 1: .*less than 2.5 m"),
+    ("run tight.toml", r"tight.toml: path.elements.1.radius_m = 1: .*less than 1.5 m"),
     ("run rate.toml", "rate.toml: sensor.rate_hz: rate = 300 Hz does not divide the physics rate of 1000 Hz"),
     ("walk short.toml --rate 300 -o w.parquet", "rate = 300 Hz does not divide"),
     ("run brief.toml", "brief: sensor.calibration_s = 10: a run averages the static bias over 25 s"),
