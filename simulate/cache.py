@@ -14,6 +14,7 @@ import numpy as np
 import platformdirs
 
 import footfall.models
+from footfall import conventions, streams
 from footfall.errors import InputError
 from footfall.models.policy import Policy, stock_policy
 from footfall.simulate.journey import Plan, versions, walk
@@ -29,8 +30,9 @@ def cache_folder() -> Path:
 def _source_digest() -> str:
     """Hash of the code that makes walks, so that a developer's change is never answered from the cache."""
     digest = hashlib.sha256()
-    rooms = [Path(footfall.models.__file__).parent, Path(__file__).parent, Path(footfall.__file__).parent]
-    for source in sorted(path for room in rooms for path in room.glob("*.py")):
+    rooms = [Path(footfall.models.__file__).parent, Path(__file__).parent]
+    shared = [Path(str(module.__file__)) for module in (conventions, streams)]
+    for source in sorted([*shared, *(path for room in rooms for path in room.glob("*.py"))]):
         digest.update(source.name.encode() + source.read_bytes())
     return digest.hexdigest()
 
