@@ -18,6 +18,7 @@ from footfall.conventions import wrap
 from footfall.models import body, gait
 from footfall.models.subject import Habits
 from footfall.simulate.feedback import FOOT_OFFSET, Balance, feedback, mirror_where
+from footfall.simulate.heights import gait_heights, standing_height
 from footfall.simulate.observation import observe
 from footfall.simulate.standing import Gate, Stand, stand_of, standing_feedback
 from footfall.simulate.variability import AMPLITUDE, CADENCE, TOE_OUT, WIDTH, Variability
@@ -111,8 +112,8 @@ class Walkers:
             )
         self._data = [mujoco.MjData(models[0]) for _ in range(max(1, threads))]
         self._rollout = rollout.Rollout(nthread=threads)
-        self._gait_height = np.array([_gait_heights(model) for model in _distinct(models)])
-        self._standing_height = np.array([_standing_height(model) for model in models])
+        self._gait_height = np.array([gait_heights(model) for model in _distinct(models)])
+        self._standing_height = np.array([standing_height(model) for model in models])
 
         def zeros(*shape: int) -> np.ndarray:
             return np.zeros((n, *shape))
@@ -392,37 +393,3 @@ class Walkers:
 def _distinct(models: Sequence[mujoco.MjModel]) -> Sequence[mujoco.MjModel]:
     """One model where all are the same object."""
     return models[:1] if all(model is models[0] for model in models) else models
-
-
-def _lowest(model: mujoco.MjModel, data: mujoco.MjData, joints: np.ndarray) -> float:
-    """Height of the pelvis over the sole that is lowest in this pose (m)."""
-    touching = [model.geom(f"{part}_{side}").id for side in "rl" for part in ("heel", "ball", "toe")]
-    data.qpos[:] = 0
-    data.qpos[3] = 1
-    data.qpos[7:] = joints
-    mujoco.mj_kinematics(model, data)
-    return -min(data.geom_xpos[g][2] - model.geom_size[g][0] for g in touching)
-
-
-def _standing_height(model: mujoco.MjModel) -> float:
-    joints = np.zeros(body.N_JOINTS)
-    joints[body.SERVO_JOINT] = gait.STANDING
-    return _lowest(model, mujoco.MjData(model), joints)
-
-
-def _gait_heights(model: mujoco.MjModel) -> np.ndarray:
-    """Pelvis height (m) at 100 phases of the stride at which the lower foot touches level ground."""
-    data, heights = mujoco.MjData(model), np.zeros(100)
-    for i in range(len(heights)):
-        phase = i / len(heights)
-        joints = np.zeros(body.N_JOINTS)
-        joints[body.SERVO_JOINT] = gait.reference_angles(np.array(phase), np.array(1.25))
-        for side, offset in (("r", 0.0), ("l", 0.5)):
-            if 0.3 < (phase + offset) % 1 < 0.63:  # the toe bends under a lifted heel
-                flexion = [
-                    joints[body.JOINTS.index(f"{name}_{side}")] for name in ("hip_flexion", "knee", "ankle")
-                ]
-                foot_pitch = flexion[0] - flexion[1] + flexion[2]
-                joints[body.JOINTS.index(f"toe_{side}")] = np.clip(-foot_pitch, 0, 0.6)
-        heights[i] = _lowest(model, data, joints)
-    return heights
