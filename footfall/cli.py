@@ -238,6 +238,36 @@ def walk(
 
 
 @app.command()
+def render(
+    scenario: ScenarioArgument,
+    output: OutputOption,
+    number: Annotated[int, typer.Option(min=1, help="Which of the scenario's walks: its subject.")] = 1,
+    skip: Annotated[
+        float, typer.Option(min=0, help="Seconds after the first step at which it begins.", callback=finite)
+    ] = 4.0,
+    seconds: Annotated[
+        float, typer.Option(min=0.5, max=60, help="How much a moving picture shows.", callback=finite)
+    ] = 4.0,
+) -> None:
+    """Draw the walker at the beginning of a walk: moving (.webp) or as a strip of moments (.png).
+
+    Without a screen it draws through EGL; set MUJOCO_GL to choose another way.
+    """
+    import os
+
+    if sys.platform == "linux" and "DISPLAY" not in os.environ:
+        os.environ.setdefault("MUJOCO_GL", "egl")  # read when MuJoCo is first imported
+    from footfall.scenarios.render import render as draw
+    from footfall.scenarios.scenario import load_scenario
+
+    require_output(output, (".webp", ".png"))
+    plan = load_scenario(scenario).plan(number - 1)
+    with ERR.status("walking and drawing"):
+        pictures = draw(plan, output, skip=skip, seconds=seconds)
+    say(f"{pictures} pictures: {output}")
+
+
+@app.command()
 def record(
     walk: Annotated[Path, typer.Argument(help="A walk that `footfall walk` wrote.")],
     output: OutputOption,

@@ -50,7 +50,7 @@ def blaming(file: Path | str, part: str = "recording") -> Iterator[None]:
         raise InputError(f"{file}: {str(error).removeprefix(f'{part}: ')}") from None
 
 
-def require_output(file: Path, ending: str, *inputs: Path) -> None:
+def require_output(file: Path, ending: str | tuple[str, ...], *inputs: Path) -> None:
     """Refuse a file that cannot or must not be written before any work is done.
 
     Raises
@@ -58,8 +58,9 @@ def require_output(file: Path, ending: str, *inputs: Path) -> None:
     InputError
         Another ending, a folder, no folder to write into, or one of `inputs`.
     """
-    if file.suffix.lower() != ending:
-        raise InputError(f"{file}: expected a name that ends in {ending}")
+    endings = (ending,) if isinstance(ending, str) else ending
+    if file.suffix.lower() not in endings:
+        raise InputError(f"{file}: expected a name that ends in {' or '.join(endings)}")
     if file.is_dir():
         raise InputError(f"{file}: a folder, expected a file to write")
     if not file.parent.is_dir():

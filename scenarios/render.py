@@ -40,11 +40,9 @@ def render(plan: Plan, output: Path, *, skip: float = 3.0, seconds: float = 4.0)
     Raises
     ------
     InputError
-        An ending that is neither, nothing to draw with, or a walk that ends before the first picture.
+        Nothing to draw with, or a walk that ends before the first picture.
     """
-    if output.suffix not in (".webp", ".png"):
-        raise InputError(f"{output}: expected a file that ends in .webp or .png")
-    moving = output.suffix == ".webp"
+    moving = output.suffix.lower() == ".webp"
     pictures = _pictures(
         plan, skip, seconds if moving else STRIP_FRAMES * STRIP_EVERY * CONTROL_INTERVAL, moving
     )
@@ -89,6 +87,8 @@ def _pictures(plan: Plan, skip: float, seconds: float, moving: bool) -> list[np.
         if shown > seconds:
             break
         if renderer is None:
+            # Clipping and shadows to the walker's scale, not to that of a landscape of a kilometre.
+            model.stat.extent, model.stat.center[:] = 2.0, 0.0
             try:
                 renderer = mujoco.Renderer(model, _HEIGHT, width)
             except Exception as error:
