@@ -23,6 +23,7 @@ STRIP_FRAMES, STRIP_EVERY = 7, 5
 _WIDTH, _HEIGHT = 480, 400
 _LOAD_N = 150.0  # a foot that carries this leaves a footprint
 _PRINT_SPACING = 0.3  # m
+_OVER_SOLE = 0.035  # m, height of the sensed point, the foot's centre of mass, in stance
 
 
 def render(plan: Plan, output: Path, *, skip: float = 3.0, seconds: float = 4.0) -> int:
@@ -156,6 +157,5 @@ def _draw_path(scene: object, plan: Plan, x: float, y: float) -> None:
 
 def _draw_prints(scene: object, prints: deque[np.ndarray]) -> None:
     for place in prints:
-        forward = np.array([np.cos(place[3]), np.sin(place[3]), 0.0])
-        ground = place[:3] + 0.05 * forward - np.array([0, 0, body.ANKLE_HEIGHT - 0.003])
+        ground = place[:3] - [0, 0, _OVER_SOLE - 0.003]
         _add(scene, mujoco.mjtGeom.mjGEOM_BOX, [0.12, 0.042, 0.001], ground, place[3], [0.42, 0.4, 0.38, 1])
