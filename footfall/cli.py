@@ -8,19 +8,15 @@ from __future__ import annotations
 
 import math
 import sys
-from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import Progress
 
 from footfall import __version__
 from footfall.errors import InputError
 from footfall.terminal import ERR, OUT, blaming, finite, perform, print_json, require_output, say
-
-if TYPE_CHECKING:
-    from footfall.scenarios.run import Result, Task
 
 app = typer.Typer(
     add_completion=False,
@@ -130,6 +126,7 @@ def run(
 
     The folder gets scores.json, every walk, recording and track (Parquet) and the figures (PNG).
     """
+    from footfall.progress import perform_showing
     from footfall.scenarios import report
     from footfall.scenarios.results import results_folder, write_results
     from footfall.scenarios.run import tasks
@@ -142,7 +139,7 @@ def run(
     )
     folder = out or Path("out") / chosen.name
     with results_folder(folder):
-        results = _perform_all(todo)
+        results = perform_showing(todo)
         document = report.as_json(chosen.name, results)
         with ERR.status("writing files and figures"):
             write_results(results, document, folder)
@@ -152,31 +149,6 @@ def run(
         for part in report.run_report(chosen.name, results):
             OUT.print(part)
     say(f"Scores, walks, tracks and figures are in {folder}")
-
-
-def _perform_all(todo: list[Task]) -> list[Result]:
-    """All results, with one progress bar a walk."""
-    from footfall.scenarios.run import perform_all
-
-    length = todo[0].scenario.path.route.length
-
-    def show(index: int, metres: float, unit: int) -> None:
-        task = todo[index]
-        label = f"walk {task.number + 1}, unit {task.unit_seed}"
-        if unit:
-            label = f"walk {task.number + 1}, other unit {unit} of {len(task.others)}"
-        progress.update(bars[index], completed=round(metres), description=label)
-
-    text, metre = TextColumn("{task.description}"), TextColumn("m")
-    columns = (text, BarColumn(), MofNCompleteColumn(), metre, TimeElapsedColumn())
-    with Progress(*columns, console=ERR, transient=True, disable=not ERR.is_terminal) as progress:
-        bars = [progress.add_task(f"walk {task.number + 1}", total=round(length)) for task in todo]
-        results = []
-        with closing(perform_all(todo, show)) as performed:
-            for index, result in enumerate(performed):
-                show(index, length, 0)
-                results.append(result)
-    return results
 
 
 @app.command()
@@ -240,7 +212,7 @@ def walk(
 @app.command()
 def render(
     scenario: ScenarioArgument,
-    output: OutputOption,
+    output: Annotated[Path, typer.Option("--output", "-o", help="WebP or PNG file to write.")],
     number: Annotated[int, typer.Option(min=1, help="Which of the scenario's walks: its subject.")] = 1,
     skip: Annotated[
         float, typer.Option(min=0, help="Seconds after the first step at which it begins.", callback=finite)
