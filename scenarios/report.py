@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from footfall.scenarios.paper import HDR_TABLE_2, HDR_TABLE_2_MEAN
+from footfall.scenarios.path import Path
 from footfall.scenarios.run import Result
 from footfall.scenarios.score import Score, improvement, mean_score
 from footfall.simulate.journey import versions
@@ -84,7 +85,8 @@ def run_report(name: str, results: Sequence[Result]) -> list[RenderableType]:
     first, distance = results[0].task, np.mean([_distance(result) for result in results])
     count = "1 walk" if len(results) == 1 else f"{len(results)} walks"
     parts: list[RenderableType] = [
-        Text.assemble((name, "bold"), f": {count} of {distance:.0f} m, IMU {first.imu}\n"),
+        Text.assemble((name, "bold"), f": {count} of {distance:.0f} m, IMU {first.imu}"),
+        Text(path_line(first.scenario.path) + "\n", style="dim"),
         heading_table(results),
     ]
     if name == "closed-loop":
@@ -93,6 +95,16 @@ def run_report(name: str, results: Sequence[Result]) -> list[RenderableType]:
             parts.append(Text(_CHOSEN_UNITS, style="dim"))
     others = others_table(results)
     return [*parts, *([others] if others else []), position_table(results)]
+
+
+def path_line(path: Path) -> str:
+    """Length of a path and how well it closes, or how far and how high from its start it ends."""
+    gap, heading, climb = path.closure.gap_m, path.closure.heading_deg, path.closure.climb_m
+    length = f"Path of {path.route.length:.2f} m"
+    if path.closed:
+        millimetres = f"{gap * 1000:.2g} mm on the ground and {abs(climb) * 1000:.2g} mm of height"
+        return f"{length}, closed within {abs(heading):.1g} deg, {millimetres}"
+    return f"{length}, open: it ends {gap:.1f} m from its start, {climb:+.2f} m higher"
 
 
 _CHOSEN_UNITS = (

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from footfall.scenarios import figures
 from footfall.scenarios.paper import HDR_TABLE_2, HDR_TABLE_2_MEAN
-from footfall.scenarios.report import as_json, paper_table, run_report, spread
+from footfall.scenarios.report import as_json, paper_table, path_line, run_report, spread
 from footfall.scenarios.run import perform, tasks
 from footfall.scenarios.scenario import load_scenario
 from footfall.scenarios.score import Score, mean_score
@@ -197,3 +197,12 @@ def test_small_causes_are_pooled_and_the_sum_is_the_sum(walked):
     parts = [values for label, values in lines.items() if label not in ("sum",) and not label.startswith("_")]
     np.testing.assert_allclose(np.sum(parts, axis=0), lines["sum"], atol=1e-9)
     assert len(parts) < len(walked.budget.causes)
+
+
+def test_the_path_line_tells_length_and_closure():
+    closed = path_line(load_scenario("closed-loop").path)
+    assert closed.startswith("Path of 1800.00 m, closed within ")
+    assert " mm on the ground" in closed
+    assert path_line(load_scenario("straight").path).endswith(
+        "open: it ends 1800.0 m from its start, +0.00 m higher"
+    )
