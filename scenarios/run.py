@@ -96,8 +96,7 @@ def perform(task: Task, on_progress: Callable[[float, int], None] | None = None)
     scenario = task.scenario
     plan = replace(scenario.plan(task.number), seed=task.walk_seed)
     report, length = on_progress or (lambda metres, units: None), plan.route.length
-    # The walker goes on for a few metres beyond the end, which are not part of the walk.
-    walk = cached_walk(plan, use_cache=task.use_cache, on_progress=lambda at: report(min(at, length), 0))
+    walk = cached_walk(plan, use_cache=task.use_cache, on_progress=lambda metres: report(metres, 0))
     spec = load_spec(task.imu)
     start = start_pose(walk)
 

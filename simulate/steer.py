@@ -19,7 +19,7 @@ STRAY_LIMIT = 1.5  # m off the route: a stumble
 _BEARING_GAIN = 1.5  # 1/s
 _SEARCH = 2.0  # m of route that one control step may advance at the most
 _LOOK_AHEAD, _LOOK_AHEAD_S = 0.4, 0.9  # m, and s of the present speed: 1.6 m at 1.3 m/s
-# Speed (m/s) at which people take bends, by curvature (1/m): 10 m, 2.5 m, 1.5 m, on the spot.
+# Speed (m/s) in bends by their curvature (1/m): radii of 10, 4, 2.5 and 1.5 m, and on the spot.
 _BEND_CURVATURE = np.array([0.1, 0.25, 0.4, 0.67, 2.0])
 _BEND_SPEED = np.array([2.0, 1.2, 1.0, 0.85, 0.6])
 
