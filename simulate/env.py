@@ -220,7 +220,7 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Start in mid-gait at a random phase, heading and command."""
+        """Start in mid-gait or standing, at a random phase, heading and command."""
         super().reset(seed=seed)
         self._task.seed(self.np_random)
         self._task.reset(np.ones(1, dtype=bool))

@@ -110,7 +110,7 @@ def reward_terms(
         "foot_jolt": np.clip(jolt / 60 - 1, 0, 2.5),
         # Wants to stop and still drifts.
         "dawdle": np.where((walkers.speed_goal < 0.2) & (gate > 0.01), np.abs(np.clip(lag, -0.3, 1)), 0.0),
-        # Step width beyond 15 cm, or feet that nearly cross.
+        # Ankles more than 13 cm apart sideways, or feet that nearly cross.
         "wide": gate
         * (np.clip((separation - 0.13) / 0.05, 0, 2) + np.clip((0.06 - separation) / 0.05, 0, 2)),
     }
