@@ -13,14 +13,38 @@ from footfall.models.imu.spec import SHEETS
 from footfall.scenarios.path import MIN_RADIUS_M
 from footfall.scenarios.scenario import STOCK, load_scenario, stock_scenarios
 
-STOCK_NAMES = ("closed-loop", "closed-loop-gentle", "curving", "straight", "turning")
+LONG_NAMES = ("closed-loop", "closed-loop-gentle", "curving", "straight", "turning")
+IHDE_NAMES = ("ihde-test1", "ihde-test2", "ihde-test3")
 
 
 def test_the_stock_scenarios():
-    assert stock_scenarios() == STOCK_NAMES
+    assert set(stock_scenarios()) == {*LONG_NAMES, *IHDE_NAMES}
 
 
-@pytest.mark.parametrize("name", STOCK_NAMES)
+@pytest.mark.parametrize(("name", "length"), list(zip(IHDE_NAMES, (202, 90, 455), strict=True)))
+def test_the_ihde_papers_paths_are_as_long_as_stated_and_end_at_their_start(name, length):
+    scenario = load_scenario(name)
+    route, closure = scenario.path.route, scenario.path.closure
+    assert route.length == pytest.approx(length, abs=0.03)
+    assert closure.gap_m < 1e-3
+    assert scenario.walks >= 20
+    assert scenario.imu == "mtig710"
+
+
+def test_the_ihde_papers_headings():
+    """Right angles alone; two of them, a curve and 254 deg; and all directions of a track."""
+
+    def degrees(name):
+        route = load_scenario(name).path.route
+        return np.degrees(route.heading[np.abs(route.curvature) < 1e-9])
+
+    assert set(np.round(degrees("ihde-test1"), 6)) == {-270.0, -180.0, -90.0, 0.0, 90.0}
+    # Read off the paper's text and Figure 7; solved for closure.
+    assert sorted(set(np.round(degrees("ihde-test2")))) == [0, 90, 254]
+    assert sorted(set(np.round(degrees("ihde-test3"), 6))) == [0, 180, 360]
+
+
+@pytest.mark.parametrize("name", LONG_NAMES)
 def test_stock_scenarios_are_1800_m_and_walkable(name):
     scenario = load_scenario(name)
     route = scenario.path.route
@@ -154,7 +178,7 @@ def test_a_users_file_works_as_a_stock_name_does(own):
     assert [without.unit_seed(walk) for walk in range(3)] == [40, 41, 42]
 
 
-@pytest.mark.parametrize("name", STOCK_NAMES)
+@pytest.mark.parametrize("name", (*LONG_NAMES, *IHDE_NAMES))
 def test_a_copy_of_a_stock_file_is_the_same_scenario(name, tmp_path):
     stock, copy = load_scenario(name), load_scenario(shutil.copy(STOCK / f"{name}.toml", tmp_path))
     assert np.array_equal(copy.path.route.x, stock.path.route.x)
