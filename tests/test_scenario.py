@@ -178,7 +178,7 @@ def test_a_users_file_works_as_a_stock_name_does(own):
     assert [without.unit_seed(walk) for walk in range(3)] == [40, 41, 42]
 
 
-@pytest.mark.parametrize("name", (*LONG_NAMES, *IHDE_NAMES))
+@pytest.mark.parametrize("name", [*LONG_NAMES, *IHDE_NAMES])
 def test_a_copy_of_a_stock_file_is_the_same_scenario(name, tmp_path):
     stock, copy = load_scenario(name), load_scenario(shutil.copy(STOCK / f"{name}.toml", tmp_path))
     assert np.array_equal(copy.path.route.x, stock.path.route.x)
