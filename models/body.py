@@ -1,8 +1,9 @@
-"""The walker's body of 1.75 m, built with MjSpec: 23 degrees of freedom, 15 torque-limited joint servos.
+"""The walker's body of 1.75 m, built with MjSpec: 25 degrees of freedom, 17 torque-limited joint servos.
 
 Segment lengths and masses follow Winter, Biomechanics and Motor Control of Human Movement, table 4.1
-(thigh 0.245 H, shank 0.246 H; thigh 0.100 M, shank 0.0465 M, foot with shoe 0.017 M). The pelvis carries
-0.142 M and the rigid head-arms-trunk the rest. Nothing but joint torques, gravity and ground contact acts.
+(thigh 0.245 H, shank 0.246 H; thigh 0.100 M, shank 0.0465 M, foot with shoe 0.017 M, arm and hand 0.05 M).
+The pelvis carries 0.142 M, the rigid head and trunk the rest. Nothing but joint torques, gravity and
+ground contact acts.
 """
 
 from __future__ import annotations
@@ -19,10 +20,12 @@ from footfall.models.subject import REFERENCE_HEIGHT_M, Build
 # Joint names, in the order of qpos after the free joint. Right leg first: it carries the IMU by default.
 LEG_JOINTS = ("hip_flexion", "hip_adduction", "hip_rotation", "knee", "ankle", "subtalar", "toe")
 LUMBAR_JOINTS = ("lumbar_roll", "lumbar_pitch", "lumbar_yaw")
+ARM_JOINTS = ("shoulder_r", "shoulder_l")
 JOINTS = (
     *(f"{joint}_r" for joint in LEG_JOINTS),
     *(f"{joint}_l" for joint in LEG_JOINTS),
     *LUMBAR_JOINTS,
+    *ARM_JOINTS,
 )
 
 
@@ -44,12 +47,13 @@ _LEG_SERVOS = {
     "ankle": Servo(300, 12, -160, 60),
     "subtalar": Servo(150, 6, -50, 50),
 }
-# The actuators, in control order: lumbar, right leg, left leg. The toes are passive.
+# The actuators, in control order: lumbar, right leg, left leg, arms. The toes are passive.
 SERVOS = {
     "lumbar_roll": Servo(600, 50, -150, 150),
     "lumbar_pitch": Servo(600, 50, -150, 150),
     "lumbar_yaw": Servo(300, 25, -80, 80),
     **{f"{joint}_{side}": servo for side in "rl" for joint, servo in _LEG_SERVOS.items()},
+    **{name: Servo(25, 2.5, -30, 30) for name in ARM_JOINTS},
 }
 N_JOINTS, N_SERVOS = len(JOINTS), len(SERVOS)
 SERVO_JOINT = np.array([JOINTS.index(name) for name in SERVOS])  # control index -> joint index
@@ -70,6 +74,8 @@ _LUMBAR_AXES = {
     "lumbar_pitch": ((0, 1, 0), (-30, 45), 2.0, 0.01, 0.0),
     "lumbar_yaw": ((0, 0, 1), (-35, 35), 2.0, 0.01, 0.0),
 }
+_SHOULDER_AXIS = ((0, -1, 0), (-60, 90), 0.3, 0.005, 0.0)  # flexion, forward, is positive
+_SHOULDER = (0.0, 0.21, 0.40)  # m from the torso's origin
 
 ANKLE_HEIGHT = 0.075  # m above the ground, sole included, reference body
 HIP_HALF_WIDTH = 0.088
@@ -166,10 +172,13 @@ def build_body(
     for side in "rl":
         _add_leg(pelvis, side, build)
     torso = pelvis.add_body(name="torso", pos=[0, 0, 0.10])
-    _inertial(torso, [0, 0, 0.24], 40.2, np.array([2.2, 2.0, 1.0]) * build.trunk_mass, build.trunk_mass)
+    inertia = np.array([1.35, 1.45, 0.68]) * build.trunk_mass
+    _inertial(torso, [0, 0, 0.274], 32.7, inertia, build.trunk_mass)
     for name, axis in _LUMBAR_AXES.items():
         _joint(torso, name, *axis)
     _add_torso_looks(torso)
+    for side in "rl":
+        _add_arm(torso, side, build)
 
     for name, servo in SERVOS.items():
         actuator = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
@@ -183,6 +192,7 @@ def build_body(
 _TROUSERS = (0.20, 0.24, 0.34, 1.0)
 _SHIRT = (0.75, 0.35, 0.25, 1.0)
 _SKIN = (0.85, 0.68, 0.56, 1.0)
+_HAIR = (0.25, 0.18, 0.13, 1.0)
 _SHOE = (0.92, 0.92, 0.95, 1.0)
 
 
@@ -336,15 +346,28 @@ def _add_leg(pelvis: mujoco.MjsBody, side: str, build: Build) -> None:
 
 
 def _add_torso_looks(torso: mujoco.MjsBody) -> None:
-    """Trunk, head and hanging arms; their mass is in the torso's inertia."""
+    """Trunk and head; their mass is in the torso's inertia."""
     for y in (-0.07, 0.07):
         _look(torso, [0, y, 0.02], [0, 1.3 * y, 0.36], 0.10, _SHIRT)
-    _look(torso, [0, 0, 0.42], [0, 0, 0.5], 0.05, _SKIN)
-    _look(torso, [0.01, 0, 0.585], [0.01, 0, 0.62], 0.095, _SKIN)
-    for y in (-1, 1):
-        shoulder, elbow, hand = [0, 0.21 * y, 0.40], [-0.02, 0.25 * y, 0.10], [0.06, 0.25 * y, -0.14]
-        _look(torso, shoulder, elbow, 0.045, _SHIRT)
-        _look(torso, elbow, hand, 0.036, _SKIN)
+    _look(torso, [0, -0.14, 0.385], [0, 0.14, 0.385], 0.065, _SHIRT)
+    _look(torso, [0, 0, 0.42], [0.01, 0, 0.50], 0.05, _SKIN)
+    _look(torso, [0.015, 0, 0.575], [0.01, 0, 0.63], 0.088, _SKIN)
+    _look(torso, [-0.01, 0, 0.60], [-0.005, 0, 0.645], 0.091, _HAIR)
+
+
+def _add_arm(torso: mujoco.MjsBody, side: str, build: Build) -> None:
+    """An arm that swings at the shoulder, its elbow a little bent."""
+    sign = -1 if side == "r" else 1
+    x, y, z = _SHOULDER
+    arm = torso.add_body(name=f"arm_{side}", pos=[x, sign * y, z])
+    # Winter: centre of mass 0.530 and radius of gyration 0.368 of the 0.58 m from shoulder to wrist.
+    inertia = np.array([0.171, 0.171, 0.010]) * build.trunk_mass
+    _inertial(arm, [0.03, sign * 0.03, -0.308], 3.75, inertia, build.trunk_mass)
+    _joint(arm, f"shoulder_{side}", *_SHOULDER_AXIS)
+    elbow, wrist = [-0.01, sign * 0.045, -0.31], [0.07, sign * 0.045, -0.55]
+    _look(arm, [0, 0, 0], elbow, 0.045, _SHIRT)
+    _look(arm, elbow, wrist, 0.036, _SKIN)
+    _look(arm, wrist, [0.105, sign * 0.04, -0.63], 0.034, _SKIN)
 
 
 # Sensor layout: what control and scoring read, in this order.

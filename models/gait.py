@@ -15,7 +15,8 @@ from footfall.models.body import N_SERVOS, SERVOS
 N_PHASE = 1000
 _HARMONICS = 7
 _PELVIC_TILT_DEG = 6.5
-_TRUNK_COUNTER_ROTATION = 0.2  # rad, in place of arm swing: without it the body spins
+_TRUNK_COUNTER_ROTATION = 0.12  # rad, and the swing of the arms: without them the body spins
+_ARM_SWING, _ARM_REST = 0.30, -0.03  # rad at the shoulder; the right arm is back at the right heel strike
 
 # percent of the stride -> degrees
 _HIP = {
@@ -67,12 +68,15 @@ def _table() -> np.ndarray:
     for side, offset in (("r", 0), ("l", N_PHASE // 2)):
         for joint, curve in curves.items():
             table[:, INDEX[f"{joint}_{side}"]] = np.roll(curve, -offset)
-    table[:, INDEX["lumbar_yaw"]] = -_TRUNK_COUNTER_ROTATION * np.cos(2 * np.pi * phase / N_PHASE)
+    swing = np.cos(2 * np.pi * phase / N_PHASE)
+    table[:, INDEX["lumbar_yaw"]] = -_TRUNK_COUNTER_ROTATION * swing
+    table[:, INDEX["shoulder_r"]] = _ARM_REST - _ARM_SWING * swing
+    table[:, INDEX["shoulder_l"]] = _ARM_REST + _ARM_SWING * swing
     return table
 
 
 TABLE = _table()  # (N_PHASE, N_SERVOS) rad, at 1.25 m/s
-_HIP_MASK = mask("hip_flexion")
+_HIP_MASK = mask("hip_flexion", "shoulder", "lumbar_yaw")  # swing with the stride's length
 _KNEE_ANKLE_MASK = mask("knee", "ankle")
 
 
@@ -111,7 +115,7 @@ def reference_angles(phase: np.ndarray, speed: np.ndarray, amplitude: np.ndarray
 
     Returns
     -------
-    (..., 15) rad
+    (..., 17) rad
     """
     angles = TABLE[(phase * N_PHASE).astype(np.intp) % N_PHASE]
     hip = hip_amplitude(speed) * amplitude

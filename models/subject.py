@@ -37,7 +37,7 @@ class Build:
     trunk_mass: float = 1.0
     leg_mass: float = 1.0
     friction: float = 1.0
-    sole_time: float = 0.010
+    sole_time: float = 0.012
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ _LIMITS = {
     "toe_out_deg": (-3.0, 10.0),
     "asymmetry": (-0.03, 0.03),
     "friction": (0.6, 1.2),
-    "sole_time_s": (0.005, 0.02),
+    "sole_time_s": (0.007, 0.018),
 }
 # A mass that stature does not explain sits mostly on the trunk.
 _TRUNK_SHARE, _LEG_SHARE = 0.3, 0.15
@@ -97,7 +97,7 @@ class Subject:
     toe_out_deg: float = 3.0
     asymmetry: float = 0.0
     friction: float = 1.0
-    sole_time_s: float = 0.010
+    sole_time_s: float = 0.012
 
     def __post_init__(self) -> None:
         for key, (low, high) in _LIMITS.items():

@@ -32,7 +32,8 @@ class Difficulty:
     Attributes
     ----------
     speed : (low, high) m/s; turn : rad/s; grade : rise over run
-    stop : share of commands that ask to stand; stand : share of episodes that begin standing
+    stop : share of commands that ask to stand
+    stand, halt : shares of episodes that begin standing, and walking on with the wish to stand
     kick : SD (m/s) of the velocity kicks at each change of command (training only)
     variability : of the gait, up to this many times that of people
     """
@@ -42,8 +43,9 @@ class Difficulty:
     turn: float = 1.1
     grade: float = 0.09
     stop: float = 0.3
-    stand: float = 0.25
-    kick: float = 0.06
+    stand: float = 0.2
+    halt: float = 0.2
+    kick: float = 0.08
     variability: float = 1.2
 
 
@@ -61,7 +63,7 @@ def draw_build(rng: np.random.Generator) -> Build:
         trunk_mass=around(0.12),
         leg_mass=around(0.10),
         friction=float(rng.uniform(0.7, 1.2)),
-        sole_time=float(rng.uniform(0.006, 0.013)),
+        sole_time=float(rng.uniform(0.008, 0.017)),
     )
 
 
@@ -121,7 +123,11 @@ class Task:
         d, rng, walkers = self.difficulty, self.rng, self.walkers
         self._tilt_gravity(mask)
         speed, turn = self.draw_commands(n, may_stop=False)
-        standing = rng.random(n) < d.stand * d.level
+        kind = rng.random(n)
+        standing = kind < d.stand * d.level
+        halting = ~standing & (kind < (d.stand + d.halt) * d.level)
+        # From a slow walk a stand is a step away; what is learnt there makes slowing down worth it.
+        speed = np.where(halting, rng.uniform(0.0, 1.3, n), speed)
         calm = np.where(standing, 0.3, 1.0)[:, None]
         walkers.place(
             mask,
@@ -135,9 +141,10 @@ class Task:
             joint_noise=calm * rng.normal(0, 0.02, (n, walkers.qpos.shape[1] - 7)),
             velocity_noise=calm * rng.normal(0, 0.05, (n, 3)),
         )
-        turn = np.where(standing, 0.0, turn)
+        walkers.speed_goal[mask] = np.where(halting, 0.0, walkers.speed_goal[mask])
+        turn = np.where(standing | halting, 0.0, turn)
         walkers.turn[mask], walkers.turn_goal[mask] = turn, turn
-        self.until_command[mask] = np.where(standing, rng.uniform(0.5, 4, n), rng.uniform(1, 4, n))
+        self.until_command[mask] = rng.uniform(1, 4, n) + np.where(halting, 2.0, 0.0)
 
     def _tilt_gravity(self, mask: np.ndarray) -> None:
         """Sloping ground is level ground under tilted gravity."""
@@ -172,7 +179,7 @@ class Task:
         stood = walkers.speed_goal[due] < 0.2
         walkers.speed_goal[due] = np.where(stood, again, speed)
         walkers.turn_goal[due] = np.where(stood, 0.0, turn)
-        self.until_command[due] = rng.uniform(1.5, 5, n)
+        self.until_command[due] = rng.uniform(1.5, 5, n) + np.where(walkers.speed_goal[due] < 0.2, 2.0, 0.0)
         kick = d.kick * d.level * np.where(walkers.gate.value[due] < 0.5, 0.3, 1.0)[:, None]
         walkers.qvel[due, :3] += kick * rng.standard_normal((n, 3)) * [1, 1, 0.3]
 

@@ -29,7 +29,7 @@ JOINT_MIRROR, JOINT_SIGN = _mirror(JOINTS)
 
 
 def mirror_where(left_stance: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Mirror the rows (n, 15) of servo values of walkers in left stance."""
+    """Mirror the rows (n, 17) of servo values of walkers in left stance."""
     return np.where(left_stance[:, None], values[:, SERVO_MIRROR] * SERVO_SIGN, values)
 
 
@@ -79,7 +79,7 @@ GAIN_SCALE = Gains(
     0.4, 0.05, 0.08, 0.5, 0.08, 0.08, 0.5, 0.08, 0.05, 0.4, 0.08, 0.08, 0.15, 0.2, 0.2, 0.15, 0.3, 0.3, 0.05,
     0.5, 0.2, 0.2, 0.1, 0.5, 0.2, 0.3, 0.05, 0.3, 0.15, 0.2, 0.15, 0.06,
 )  # fmt: skip
-_FADE, _BRAKE = 0.9, 0.2  # of the push-off; rad per m/s
+_BRAKE = 0.2  # rad per m/s
 FOOT_OFFSET = 0.075  # m from the stance foot to the pelvis, sideways, at which no correction is made
 
 
@@ -126,20 +126,21 @@ def feedback(gains: np.ndarray, b: Balance) -> np.ndarray:
 
     Returns
     -------
-    (n, 15) rad
+    (n, 17) rad
     """
     g = Gains(*np.moveaxis(np.asarray(gains), -1, 0))
     swing = np.clip((b.step_phase - 0.2) / 0.15, 0, 1)  # after toe-off of the other foot
     late = np.clip((b.step_phase - 0.5) / 0.2, 0, 1)
-    # Walking slowly, the push-off fades and the swing leg is placed to brake.
+    # Walking slowly, what drives the body on (push-off, lean, long steps) fades and the swing leg brakes.
     slow = np.clip(1 - b.speed / 0.8, 0, 1)
+    going = 1 - slow
     out = np.zeros((len(b.pitch), N_SERVOS))
     out[:, _LUMBAR_ROLL] = -g.torso_roll * b.roll - g.torso_roll_rate * b.roll_rate
     out[:, _LUMBAR_PITCH] = (
-        -g.torso_pitch * b.pitch - g.torso_pitch_rate * b.pitch_rate + g.torso_pitch_offset - 0.02 * slow
+        -g.torso_pitch * b.pitch - g.torso_pitch_rate * b.pitch_rate + g.torso_pitch_offset * going
     )
     out[:, _STANCE["hip_flexion"]] = (
-        -g.stance_hip_pitch * b.pitch - g.stance_hip_pitch_rate * b.pitch_rate + g.stance_hip_offset
+        -g.stance_hip_pitch * b.pitch - g.stance_hip_pitch_rate * b.pitch_rate + g.stance_hip_offset * going
     )
     out[:, _STANCE["hip_adduction"]] = (
         g.stance_hip_roll * b.roll + g.stance_hip_roll_rate * b.roll_rate + g.stance_adduction_offset
@@ -149,7 +150,7 @@ def feedback(gains: np.ndarray, b: Balance) -> np.ndarray:
     )
     out[:, _STANCE["knee"]] = g.stance_knee_offset
     out[:, _STANCE["ankle"]] = (
-        -late * g.push_off
+        -late * g.push_off * going
         + late * g.push_off_speed * b.speed_error
         + g.ankle_speed * (1 - late) * b.speed_error
     )
@@ -160,7 +161,7 @@ def feedback(gains: np.ndarray, b: Balance) -> np.ndarray:
         g.place_pitch * b.pitch
         + g.place_speed * b.speed_error
         + g.place_mean_speed * b.mean_speed_error
-        + g.place_offset
+        + g.place_offset * going
         + _BRAKE * slow * np.clip(b.speed_error, -0.2, 0.9)
     )
     out[:, _SWING["hip_adduction"]] = swing * (

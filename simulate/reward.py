@@ -16,22 +16,22 @@ _STRENGTH = np.maximum(-_LOW, _HIGH)
 _POSE_WEIGHT = 1 - 0.5 * gait.mask("lumbar_yaw", "hip_rotation", "subtalar")
 WEIGHTS = {
     "pose": 0.30,
-    "mean_speed": 0.20,
+    "mean_speed": 0.24,
     "speed": 0.08,
     "heading": 0.14,
     "upright": 0.08,
     "still_foot": 0.28,
     "contact": 0.12,
-    "load": 0.12,
+    "load": 0.18,
     "heel": 0.08,
     "torque": -0.25,
     "power": -0.03,
     "jerk": -0.036,
     "action": -0.0135,
-    "impact": -0.06,
-    "foot_jolt": -0.12,
+    "impact": -0.12,
+    "foot_jolt": -0.20,
     "dawdle": -0.5,
-    "wide": -0.08,
+    "wide": -0.10,
 }
 _BODY_WEIGHT = 740.0  # N
 
@@ -106,13 +106,13 @@ def reward_terms(
         "power": np.abs(torque * angle_rate).sum(2).mean(1) / 1000,
         "jerk": (residual_change**2).sum(1) * (1 + 3 * (1 - gate)),
         "action": (action**2).sum(1),
-        "impact": np.clip(touch.sum(-1).max((1, 2)) / _BODY_WEIGHT - 1.6, 0, 2.5),
-        "foot_jolt": np.clip(jolt / 60 - 1, 0, 2.5),
+        "impact": np.clip(touch.sum(-1).max((1, 2)) / _BODY_WEIGHT - 1.35, 0, 2.5),
+        "foot_jolt": np.clip(jolt / 50 - 1, 0, 2.5),
         # Wants to stop and still drifts.
         "dawdle": np.where((walkers.speed_goal < 0.2) & (gate > 0.01), np.abs(np.clip(lag, -0.3, 1)), 0.0),
-        # Ankles more than 13 cm apart sideways, or feet that nearly cross.
+        # Ankles more than 13 cm apart sideways, or less than 9.
         "wide": gate
-        * (np.clip((separation - 0.13) / 0.05, 0, 2) + np.clip((0.06 - separation) / 0.05, 0, 2)),
+        * (np.clip((separation - 0.13) / 0.05, 0, 2) + np.clip((0.09 - separation) / 0.05, 0, 2)),
     }
 
 

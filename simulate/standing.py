@@ -16,10 +16,10 @@ from footfall.models.gait import INDEX, mask
 
 GO_SPEED = 0.2  # m/s; a commanded speed above it is a wish to walk
 _STOP_SPEED = 0.12
-_GATE_DOWN_S, _GATE_UP_S = 0.40, 0.35
+_GATE_DOWN_S, _GATE_UP_S = 0.23, 0.35
 _PENDULUM_S = 0.31  # sqrt(height of the centre of mass / g)
 _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
-_STANDING_POINT = 0.035  # m, centre of mass before the middle of the ankles
+_STANDING_POINT = 0.005  # m, centre of mass before the middle of the ankles
 _FORWARD_MARGIN = (-0.06, 0.10)  # m about the standing point within which the capture point may lie
 _SIDE_MARGIN = 0.03  # m inside the feet's half distance
 _STAGGER_SHARE = 0.4  # of the stagger by which the feet's support reaches further, forward and back
@@ -27,10 +27,10 @@ _LARGEST_STAGGER = 0.32  # m
 _LOADED = 100.0  # N
 
 # Gains of the standing controller, rad per m, per m/s, per rad.
-_ANKLE, _ANKLE_RATE = 2.0, 0.7
-_HIP, _HIP_RATE = 0.8, 0.1
-_SIDE, _SIDE_RATE = 2.7, 0.8
-_TRUNK_ROLL = 0.3
+_ANKLE, _ANKLE_RATE = 3.3, 0.28
+_HIP, _HIP_RATE = 1.2, 0.085
+_SIDE, _SIDE_RATE = 4.2, 2.0
+_TRUNK_ROLL = 0.4
 _UPHILL_KNEE = 2.5
 
 _ANKLES, _HIPS = mask("ankle"), mask("hip_flexion")
@@ -124,7 +124,7 @@ def stand_of(
 
 
 def standing_feedback(s: Stand) -> np.ndarray:
-    """Offsets (n, 15) rad of the servo targets that hold a stand."""
+    """Offsets (n, 17) rad of the servo targets that hold a stand."""
     ankle = -_ANKLE * s.forward - _ANKLE_RATE * s.forward_velocity
     hip = -_HIP * s.pitch - _HIP_RATE * s.pitch_rate
     side = _SIDE * s.left + _SIDE_RATE * s.left_velocity

@@ -2,7 +2,9 @@
 
 Stage 1 tunes the gains of the balance feedback by CMA-ES with no policy; stage 2 trains the policy on top by
 PPO. The difficulty rises from straight walking to everything, and everything stays in every later batch: a
-walker that is taught one thing at a time forgets the others. Needs `pip install footfall[train]`.
+walker that is taught one thing at a time forgets the others. Stage 3 lets the last checkpoints walk fixed
+courses, keeps the one that falls least as DIR/walker.npz, and judges it on other courses. Needs
+`pip install footfall[train]`.
 """
 
 from __future__ import annotations
@@ -18,15 +20,19 @@ import cma
 import numpy as np
 import torch
 
+from footfall.models.policy import load_policy
 from footfall.simulate.env import Difficulty, Task, WalkVectorEnv, draw_build
 from footfall.simulate.feedback import GAIN_SCALE, GAIN_START
 from footfall.simulate.observation import N_OBSERVATION
 from footfall.simulate.ppo import HORIZON, Learner, Schedule
+from footfall.simulate.trial import CHOICE, JUDGEMENT, Verdict, attempt
 from footfall.simulate.walkers import CONTROL_INTERVAL, N_ACTION
 from footfall.tables import replacing
 
 ENVS = 64
 _CANDIDATES, _REPEATS, _TRIAL_S = 16, 4, 6.0
+_KEEP_FROM, _KEEP_EVERY = 0.6, 0.05  # of the planned samples: checkpoints among which the best is chosen
+_CHOICE_SEED, _JUDGEMENT_SEED = 11, 12
 
 
 def tune_gains(seed: int, generations: int) -> np.ndarray:
@@ -140,7 +146,40 @@ def train(out: Path, seed: int, samples: int, generations: int, threads: int) ->
             torch.save({"learner": learner.state(), "samples": done}, temporary)
         meta = {"seed": seed, "samples": done, "samples_planned": samples, "generations": generations}
         save_policy(learner, gains, out / "policy.npz", meta)
+        part = done / samples
+        if part >= _KEEP_FROM:
+            kept = out / f"policy_{round(part // _KEEP_EVERY * _KEEP_EVERY * 100):03d}.npz"
+            if not kept.exists():
+                save_policy(learner, gains, kept, meta)
     env.close()
+
+
+def choose(out: Path, threads: int) -> None:
+    """Keep the checkpoint that falls least on the courses of choice as walker.npz, and judge it on others.
+
+    Writes choice.json.
+    """
+
+    def told(verdict: Verdict) -> dict[str, Any]:
+        return {"falls_per_hour": verdict.falls_per_hour, "minutes": verdict.minutes, "falls": verdict.falls}
+
+    found: dict[str, Verdict] = {}
+    for path in sorted(out.glob("policy_*.npz")):
+        found[path.name] = attempt(load_policy(path), CHOICE, seed=_CHOICE_SEED, threads=threads)
+        print(f"{path.name}: {found[path.name].falls_per_hour:.1f} falls an hour", flush=True)
+    # Of equals the one that has learnt longest.
+    best = min(reversed(found), key=lambda name: found[name].falls_per_hour)
+    judged = attempt(load_policy(out / best), JUDGEMENT, seed=_JUDGEMENT_SEED, threads=threads)
+    report = {
+        "chosen": best,
+        "choice": {name: told(verdict) for name, verdict in found.items()},
+        "judgement": told(judged),
+    }
+    with replacing(out / "choice.json") as temporary:
+        temporary.write_text(json.dumps(report, indent=1) + "\n")
+    with replacing(out / "walker.npz") as temporary:
+        temporary.write_bytes((out / best).read_bytes())
+    print(f"{best} chosen; on other courses {judged.falls_per_hour:.1f} falls an hour", flush=True)
 
 
 def main() -> None:
@@ -152,11 +191,12 @@ def main() -> None:
         "--out", type=Path, required=True, help="folder of checkpoints and log; resumes from it"
     )
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--samples", type=float, default=7e6, help="control steps to learn from")
+    parser.add_argument("--samples", type=float, default=9e6, help="control steps to learn from")
     parser.add_argument("--generations", type=int, default=200, help="of CMA-ES for the feedback gains")
     parser.add_argument("--threads", type=int, default=2, help="for the physics")
     arguments = parser.parse_args()
     train(arguments.out, arguments.seed, int(arguments.samples), arguments.generations, arguments.threads)
+    choose(arguments.out, arguments.threads)
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ TURN_SLEW = 2.0  # rad/s2
 _MEAN_VELOCITY_S = 0.5
 
 # Residual (rad) for an action of 1.
-ACTION_SCALE = 3.3 * np.array([0.2, 0.2, 0.2] + [0.35, 0.25, 0.25, 0.35, 0.25, 0.15] * 2)
+ACTION_SCALE = 3.3 * np.array([0.2, 0.2, 0.2] + [0.35, 0.25, 0.25, 0.35, 0.25, 0.15] * 2 + [0.2, 0.2])
 N_ACTION = body.N_SERVOS
 _RESIDUAL_LIMIT = 2.0  # of action scale, feedback included
 
@@ -73,10 +73,10 @@ def rotation(quaternion: np.ndarray) -> np.ndarray:
 class Trace:
     """Every physics step of one control step: states after and sensors before each step, and the targets."""
 
-    qpos: np.ndarray  # (n, k, 24)
-    qvel: np.ndarray  # (n, k, 23)
+    qpos: np.ndarray  # (n, k, 26)
+    qvel: np.ndarray  # (n, k, 25)
     sensor: np.ndarray  # (n, k, n_sensor)
-    target: np.ndarray  # (n, k, 15)
+    target: np.ndarray  # (n, k, 17)
 
 
 class Walkers:
@@ -241,7 +241,7 @@ class Walkers:
 
         Parameters
         ----------
-        action : (n, 15) in [-1, 1], mirrored as the observation was
+        action : (n, 17) in [-1, 1], mirrored as the observation was
         """
         n, k = self.n, self.substeps
         half = np.floor(self.phase * 2)
@@ -295,7 +295,7 @@ class Walkers:
         self.stagger, self.spread = np.where(new, stagger, self.stagger), np.where(new, spread, self.spread)
 
     def _reference(self, phase: np.ndarray, gate: np.ndarray, stagger: float = 1.0) -> np.ndarray:
-        """Targets (n, k, 15) of gait and stand at (n, k) phases and gates, with variability and slope."""
+        """Targets (n, k, 17) of gait and stand at (n, k) phases and gates, with variability and slope."""
         width = phase.shape[1]
         amplitude = 1 + self.variability.value[:, AMPLITUDE]
         walking = gait.reference_angles(
@@ -312,7 +312,7 @@ class Walkers:
         return target + self._slope_offset(self.grade_forward, self.grade_left)[:, None]
 
     def reference_now(self) -> np.ndarray:
-        """(n, 15) reference angles at the current phase; a stagger is better lost than kept."""
+        """(n, 17) reference angles at the current phase; a stagger is better lost than kept."""
         return self._reference(self.phase[:, None], self.gate.value[:, None], stagger=0.3)[:, 0]
 
     def _advance_commands(self) -> None:
