@@ -12,9 +12,12 @@ from footfall import __version__
 from footfall.errors import InputError
 from footfall.hdr.correct import paper_positions as eq_12
 from footfall.hdr.correct import turned_positions
+from footfall.hdr.filtered import filter_track
 from footfall.hdr.hdr import HdrParams, trace
+from footfall.pdr.filtering import Corrector, Filtered, run_filter
 from footfall.pdr.footfalls import Footfalls
-from footfall.pdr.pdr import PdrParams, StartPose, dead_reckon
+from footfall.pdr.ins import FilterSettings
+from footfall.pdr.pdr import Detected, PdrParams, StartPose, dead_reckon, detect
 from footfall.pdr.track import Track
 from footfall.recording import Recording
 
@@ -39,7 +42,16 @@ class Reckoning:
     @cached_property
     def footfalls(self) -> Footfalls:
         """Dead reckoning of the recording."""
-        return dead_reckon(self.recording, self.pdr, self.start)
+        return dead_reckon(self.recording, self.pdr, self.start, self.detected)
+
+    @cached_property
+    def detected(self) -> Detected:
+        """When the foot is at rest."""
+        return detect(self.recording, self.pdr)
+
+    def filtered(self, settings: FilterSettings, corrector: Corrector | None = None) -> Filtered:
+        """The error-state filter over the recording, with a heading method or without."""
+        return run_filter(self.recording, settings, self.pdr, self.start, corrector, found=self.detected)
 
 
 @dataclass(frozen=True)
@@ -98,6 +110,11 @@ def hdr_track(
     )
 
 
+def iez_track(reckoning: Reckoning, settings: FilterSettings, *, name: str) -> Track:
+    """The error-state filter by itself: zero-velocity updates, no heading correction."""
+    return filter_track(reckoning.filtered(settings), settings, name=name)
+
+
 METHODS: Mapping[str, Method] = MappingProxyType(
     {
         method.name: method
@@ -108,6 +125,16 @@ METHODS: Mapping[str, Method] = MappingProxyType(
                 "hdr-basic",
                 "Heuristic Drift Reduction, the basic controller of section 2",
                 lambda r: hdr_track(r.footfalls, HdrParams.basic(), name="hdr-basic"),
+            ),
+            Method(
+                "iez",
+                "error-state filter, zero velocity once a stance; heading from the gyro alone",
+                lambda r: iez_track(r, FilterSettings(), name="iez"),
+            ),
+            Method(
+                "iez-paper",
+                "IEZ as in Deng et al. (2018): zero velocity at every still sample",
+                lambda r: iez_track(r, FilterSettings.paper(), name="iez-paper"),
             ),
         )
     }

@@ -32,3 +32,19 @@ class Footfalls:
 
     def __len__(self) -> int:
         return len(self.t)
+
+    @classmethod
+    def at(cls, t: np.ndarray, position: np.ndarray, heading: np.ndarray) -> Footfalls:
+        """Footfalls at these times and places: the strides are what lies between them."""
+        interval = np.diff(t, prepend=t[0])
+        steps = np.diff(position, axis=0, prepend=position[:1])
+        rate = np.zeros_like(t)
+        rate[1:] = np.diff(heading) / interval[1:]
+        return cls(
+            t=t,
+            interval=interval,
+            distance=np.hypot(*steps[:, :2].T),
+            rate=rate,
+            position=position,
+            heading=heading,
+        )

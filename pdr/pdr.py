@@ -77,6 +77,22 @@ class Rest:
     last: int
 
 
+@dataclass(frozen=True)
+class Detected:
+    """When the foot is at rest: what every reckoning of a recording begins with.
+
+    Attributes
+    ----------
+    rest : the still start
+    score : (n,) the detector's of each sample, at rest below 1
+    stances : from the still start on, as indices of samples
+    """
+
+    rest: Rest
+    score: np.ndarray
+    stances: Stances
+
+
 def static_bias(recording: Recording, bias_s: float) -> Rest:
     """Average the first `bias_s` seconds, which must be motionless (HDR paper, section 2, T_bias).
 
@@ -138,7 +154,10 @@ def level_attitude(force: np.ndarray) -> np.ndarray:
 
 
 def dead_reckon(
-    recording: Recording, params: PdrParams | None = None, start: StartPose | None = None
+    recording: Recording,
+    params: PdrParams | None = None,
+    start: StartPose | None = None,
+    found: Detected | None = None,
 ) -> Footfalls:
     """Dead-reckon a recording that begins at rest.
 
@@ -146,6 +165,7 @@ def dead_reckon(
     ----------
     recording : at least `params.bias_s` seconds at rest, then a walk
     start : position and heading of row 0
+    found : what `detect` found, where it is known already
 
     Returns
     -------
@@ -175,10 +195,8 @@ def dead_reckon(
     vertical rate, which a coning foot drives away by degrees a stride.
     """
     params, start = params or PdrParams(), start or StartPose()
-    rest = static_bias(recording, params.bias_s)
-    stances = _stances_after(recording, rest, params)
-    resets = stances.resets
-    _refuse_gaps(recording.t, int(resets[0]), int(resets[-1]), params.max_gap_s)
+    found = found or detect(recording, params)
+    rest, stances, resets = found.rest, found.stances, found.stances.resets
     quaternion, position = _kernels.reckon(
         np.ascontiguousarray(recording.t, dtype=float),
         np.ascontiguousarray(recording.gyro - rest.gyro_bias),
@@ -193,36 +211,37 @@ def dead_reckon(
     position = turn.apply(position - position[0]) + np.asarray(start.position)
     heading = heading - heading[0] + start.heading
 
-    t = recording.t[resets[stances.footfalls]]
-    interval = np.diff(t, prepend=t[0])
-    steps = np.diff(position, axis=0, prepend=position[:1])
-    rate = np.zeros_like(t)
-    rate[1:] = np.diff(heading) / interval[1:]
-    return Footfalls(
-        t=t,
-        interval=interval,
-        distance=np.hypot(*steps[:, :2].T),
-        rate=rate,
-        position=position,
-        heading=heading,
-    )
+    return Footfalls.at(recording.t[resets[stances.footfalls]], position, heading)
 
 
-def _stances_after(recording: Recording, rest: Rest, params: PdrParams) -> Stances:
-    """Stances from the still start on: reset 0 ends its averaged part, footfall 0 is its last reset."""
+def detect(recording: Recording, params: PdrParams) -> Detected:
+    """Find the still start and the stances after it.
+
+    Raises
+    ------
+    InputError
+        No rest at the start, no stride after it, or a hole in the samples that is too long.
+    """
+    rest = static_bias(recording, params.bias_s)
     t = recording.t[1:]
     score = params.detector(t, recording.gyro[1:] - rest.gyro_bias, recording.accel[1:])
     # The averaged part is at rest, whatever the detector thinks of it.
     score = np.where(np.arange(len(t)) < rest.last, np.minimum(score, 0.5), score)
-    found = find_stances(t, score, params.stance)
+    stances = _stances_after(rest, find_stances(t, score, params.stance))
+    if len(stances.footfalls) < 2:
+        raise InputError(f"recording: no stride found after the {params.bias_s:g} s at rest")
+    _refuse_gaps(recording.t, int(stances.resets[0]), int(stances.resets[-1]), params.max_gap_s)
+    return Detected(rest=rest, score=np.concatenate([score[:1], score]), stances=stances)
+
+
+def _stances_after(rest: Rest, found: Stances) -> Stances:
+    """Stances from the still start on: reset 0 ends its averaged part, footfall 0 is its last reset."""
     resets, footfalls = found.resets + 1, found.footfalls
     later = resets > rest.last
     skipped = int(np.count_nonzero(~later))
     resets = np.concatenate([[rest.last], resets[later]])
     # Not below 0: the foot may leave straight from the averaged part.
     footfalls = np.maximum(footfalls - skipped + 1, 0)
-    if len(footfalls) < 2:
-        raise InputError(f"recording: no stride found after the {params.bias_s:g} s at rest")
     return Stances(resets=resets, footfalls=footfalls)
 
 

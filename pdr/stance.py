@@ -104,7 +104,7 @@ def find_stances(t: np.ndarray, score: np.ndarray, params: StanceParams | None =
     """
     params = params or StanceParams()
     kept: list[np.ndarray] = []
-    for start, stop in _runs(score < 1.0):
+    for start, stop in runs(score < 1.0):
         if t[stop] - t[start] < params.min_stance_s:
             continue
         resets = _resets(t, score, start, stop, params.reset_s)
@@ -119,7 +119,7 @@ def find_stances(t: np.ndarray, score: np.ndarray, params: StanceParams | None =
     )
 
 
-def _runs(flags: np.ndarray) -> np.ndarray:
+def runs(flags: np.ndarray) -> np.ndarray:
     """First and last index of each run of true flags: (k, 2)."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]])))
     return edges.reshape(-1, 2) - [0, 1]
