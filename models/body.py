@@ -78,6 +78,9 @@ _SHOULDER_AXIS = ((0, -1, 0), (-60, 90), 0.3, 0.005, 0.0)  # flexion, forward, i
 _SHOULDER = (0.0, 0.21, 0.40)  # m from the torso's origin
 
 ANKLE_HEIGHT = 0.075  # m above the ground, sole included, reference body
+# The sole from heel to ball, m from the ankle: a rocker of SOLE_HALF_LENGTH^2 / SOLE_RISE = 1.7 m radius. A
+# foot in a shoe turns by some 10 deg/s even at mid-stance (real recordings: 4-18), because it rolls on.
+SOLE_CENTRE, SOLE_HALF_LENGTH, SOLE_RISE, SOLE_HALF_GAP = 0.0425, 0.0975, 0.0055, 0.026
 HIP_HALF_WIDTH = 0.088
 HIP_HEIGHT = 0.95  # of the pelvis in standing
 
@@ -315,33 +318,42 @@ def _add_leg(pelvis: mujoco.MjsBody, side: str, build: Build) -> None:
     _inertial(foot, [0.05, 0, -0.04], 1.15, np.array([0.0012, 0.005, 0.005]))
     joints(foot, "ankle", "subtalar")
     touch = {"contype": 0, "conaffinity": 1, "mass": 0, "rgba": _SHOE, "group": 1} | _contact(build)
-    sphere, capsule = mujoco.mjtGeom.mjGEOM_SPHERE, mujoco.mjtGeom.mjGEOM_CAPSULE
-    # Heel, ball and toe share the sole's plane.
+    # Two long, flat ellipsoids side by side: the shoe's sole, on which the foot rolls from heel to ball.
     sole, length = -ANKLE_HEIGHT, build.foot
-    heel = [-0.04 * length, 0, sole + 0.03]
-    foot.add_geom(name=f"heel_{side}", type=sphere, pos=heel, size=[0.03, 0, 0], **touch)
-    ball_x, ball_z = 0.125 * length, sole + 0.018
-    foot.add_geom(
-        name=f"ball_{side}",
-        type=capsule,
-        fromto=[ball_x, -0.035, ball_z, ball_x, 0.035, ball_z],
-        size=[0.018, 0, 0],
-        **touch,
-    )
-    _look(foot, [-0.03 * length, 0, -0.04], [0.11 * length, 0, -0.05], 0.034, _SHOE)
-    toe = foot.add_body(name=f"toe_{side}", pos=[0.135 * length, 0, ball_z])
+    for name, y in (("in", -sign * SOLE_HALF_GAP), ("out", sign * SOLE_HALF_GAP)):
+        foot.add_geom(
+            name=f"sole_{name}_{side}",
+            type=mujoco.mjtGeom.mjGEOM_ELLIPSOID,
+            pos=[SOLE_CENTRE * length, y, sole + SOLE_RISE],
+            size=[SOLE_HALF_LENGTH * length, 0.02, SOLE_RISE],
+            **touch,
+        )
+    for y in (-0.018, 0.018):
+        _look(foot, [-0.025 * length, y * 0.6, -0.045], [0.10 * length, y, -0.053], 0.022, _SHOE)
+    _look(foot, [-0.02 * length, 0, -0.03], [0.07 * length, 0, -0.04], 0.034, _SHOE)
+    toe = foot.add_body(name=f"toe_{side}", pos=[0.135 * length, 0, sole + 0.018])
     _inertial(toe, [0.03, 0, 0], 0.15, np.full(3, 1e-4))
     joints(toe, "toe")
-    toe.add_geom(name=f"toe_{side}", type=sphere, pos=[0.05, 0, 0], size=[0.0178, 0, 0], **touch)
+    # Toes spring: they touch when the foot has rolled on to the ball.
+    toe.add_geom(
+        name=f"toe_{side}",
+        type=mujoco.mjtGeom.mjGEOM_SPHERE,
+        pos=[0.05, 0, 0.0055],
+        size=[0.0178, 0, 0],
+        **touch,
+    )
     for y in (-0.018, 0.018):
-        _look(toe, [0.0, y, 0.004], [0.045, y / 4.5, 0.002], 0.02, _SHOE)
+        _look(toe, [0.0, y, 0.004], [0.045, y / 4.5, 0.006], 0.02, _SHOE)
 
     # Boxes round each contact, for the touch sensors.
     hidden = {"type": mujoco.mjtGeom.mjGEOM_BOX, "group": 4}
-    foot.add_site(
-        name=f"heel_{side}", pos=[-0.045 * length, 0, sole + 0.02], size=[0.04, 0.06, 0.04], **hidden
-    )
-    foot.add_site(name=f"ball_{side}", pos=[ball_x, 0, sole + 0.02], size=[0.03, 0.07, 0.04], **hidden)
+    for name, x in (("heel", -0.0275), ("ball", 0.1)):  # they part below the instep
+        foot.add_site(
+            name=f"{name}_{side}",
+            pos=[x * length, 0, sole + 0.02],
+            size=[0.06375 * length, 0.07, 0.04],
+            **hidden,
+        )
     toe.add_site(name=f"toe_{side}", pos=[0.055, 0, 0], size=[0.04, 0.06, 0.04], **hidden)
 
 

@@ -1,8 +1,9 @@
 """The reference gait: normative joint curves of level walking, scaled with speed.
 
 Curves of hip flexion, knee, ankle and hip adduction over one stride (0 = heel strike of that leg), rounded
-from normative data (Winter; Perry & Burnfield). The hip is shifted by the pelvic tilt and the ankle was
-adjusted so that forward kinematics put the foot flat from 10 to 40 % of the stride.
+from normative data (Winter; Perry & Burnfield); the foot's roll and yaw follow the gyros of real shoes. The
+hip is shifted by the pelvic tilt, and the ankle was adjusted so that forward kinematics put the foot flat
+from 10 to 40 % of the stride.
 """
 
 from __future__ import annotations
@@ -20,17 +21,20 @@ _ARM_SWING, _ARM_REST = 0.30, -0.03  # rad at the shoulder; the right arm is bac
 
 # percent of the stride -> degrees
 _HIP = {
-    0: 28, 5: 27.5, 10: 25, 20: 15, 30: 4.5, 40: -5.5, 50: -11.5, 55: -10.5, 60: -4, 65: 4.5, 70: 13.5,
-    75: 20.5, 80: 26, 85: 29.5, 90: 30.5, 95: 29.5,
+    0: 28, 5: 27, 10: 24.5, 20: 15, 30: 4.5, 40: -5.5, 50: -11.5, 55: -10.5, 60: -4, 65: 4.5, 70: 13.5,
+    75: 20.5, 80: 26, 85: 29.5, 90: 31, 95: 30.5,
 }  # fmt: skip
 _KNEE = {
-    0: 4, 5: 9, 10: 15, 15: 18, 20: 17, 25: 13.5, 30: 9.5, 35: 6.5, 40: 5.5, 45: 7, 50: 13, 55: 23, 60: 37,
-    65: 52, 70: 61, 73: 63, 77: 60, 80: 54, 85: 38, 90: 20, 95: 7,
+    0: 3, 5: 9, 10: 15, 15: 18, 20: 17, 25: 13.5, 30: 9.5, 35: 6.5, 40: 5.5, 45: 7, 50: 13, 55: 23, 60: 37,
+    65: 52, 70: 61, 73: 63, 77: 60, 80: 54, 85: 38, 90: 20, 95: 6,
 }  # fmt: skip
 _ANKLE = {
-    0: 1, 3: -3, 7: -4, 10: -0.5, 15: 4.5, 20: 8, 30: 11, 40: 12.5, 45: 12, 50: 7, 55: -3, 60: -14, 63: -17,
-    66: -15, 70: -9, 75: -1, 80: 4, 85: 5, 90: 4, 95: 2,
+    0: 5, 3: 1, 7: -4, 10: -0.5, 15: 4.5, 20: 8, 30: 11, 40: 12.5, 45: 12, 50: 7, 55: -3, 60: -14, 63: -17,
+    66: -15, 70: -9, 75: -1, 80: 4, 85: 5, 90: 5, 95: 6,
 }  # fmt: skip
+# The foot lands on the heel's outer edge, pronates, and supinates in push-off; in early swing toes turn out.
+_SUBTALAR = {0: 5, 3: 4, 8: -1, 15: -2, 30: -2, 45: -1, 52: 0, 58: 4, 65: 7, 70: 7, 80: 3, 90: 2, 95: 4}
+_TOES_OUT = {0: 0, 30: 0, 60: 0, 66: 0.5, 71: 3.5, 76: 5, 84: 3, 93: 0.5}
 _ADDUCTION = {0: -1, 10: 3, 20: 5, 30: 4.5, 40: 3.5, 50: 1, 55: -2, 62: -5, 70: -4, 80: -3, 90: -2}
 
 INDEX = {name: i for i, name in enumerate(SERVOS)}
@@ -63,6 +67,8 @@ def _table() -> np.ndarray:
         "hip_adduction": _curve(_ADDUCTION),
         "knee": _curve(_KNEE),
         "ankle": _curve(_ANKLE),
+        "subtalar": _curve(_SUBTALAR),
+        "hip_rotation": -_curve(_TOES_OUT),
     }
     table = np.zeros((N_PHASE, N_SERVOS))
     for side, offset in (("r", 0), ("l", N_PHASE // 2)):

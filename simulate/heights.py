@@ -10,12 +10,20 @@ from footfall.models import body, gait
 
 def _lowest(model: mujoco.MjModel, data: mujoco.MjData, joints: np.ndarray) -> float:
     """Height of the pelvis over the sole that is lowest in this pose (m)."""
-    touching = [model.geom(f"{part}_{side}").id for side in "rl" for part in ("heel", "ball", "toe")]
+    touching = [model.geom(f"{part}_{side}").id for side in "rl" for part in ("sole_in", "sole_out", "toe")]
     data.qpos[:] = 0
     data.qpos[3] = 1
     data.qpos[7:] = joints
     mujoco.mj_kinematics(model, data)
-    return -min(data.geom_xpos[g][2] - model.geom_size[g][0] for g in touching)
+
+    def reach(g: int) -> float:
+        """Of a sphere or an ellipsoid below its centre."""
+        size = model.geom_size[g]
+        if model.geom_type[g] == mujoco.mjtGeom.mjGEOM_SPHERE:
+            return float(size[0])
+        return float(np.linalg.norm(size * data.geom_xmat[g].reshape(3, 3)[2]))
+
+    return -min(data.geom_xpos[g][2] - reach(g) for g in touching)
 
 
 def standing_height(model: mujoco.MjModel) -> float:

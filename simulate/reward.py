@@ -20,7 +20,8 @@ WEIGHTS = {
     "speed": 0.08,
     "heading": 0.14,
     "upright": 0.08,
-    "still_foot": 0.28,
+    "swing": 0.12,
+    "still_foot": 0.20,
     "contact": 0.12,
     "load": 0.18,
     "heel": 0.08,
@@ -33,6 +34,14 @@ WEIGHTS = {
     "dawdle": -0.5,
     "wide": -0.10,
 }
+# Joint angles to the elevation of the soles, right and left.
+_SOLE = np.stack(
+    [
+        gait.mask(f"hip_flexion_{side}") - gait.mask(f"knee_{side}") + gait.mask(f"ankle_{side}")
+        for side in "rl"
+    ],
+    1,
+)
 _BODY_WEIGHT = 740.0  # N
 
 # Vertical ground force of one foot over its stride, in body weights, at about 1.3 m/s (rounded from normative
@@ -55,7 +64,8 @@ def reward_terms(
     n, k = walkers.n, walkers.substeps
     qpos, qvel = walkers.qpos, walkers.qvel
     reference = walkers.reference_now()
-    deviation = ((qpos[:, 7 + body.SERVO_JOINT] - reference) ** 2 * _POSE_WEIGHT).sum(1)
+    joints = qpos[:, 7 + body.SERVO_JOINT]
+    deviation = ((joints - reference) ** 2 * _POSE_WEIGHT).sum(1)
     along, _ = walkers.velocity()
     lag, aside = walkers.mean_velocity[:, 0] - walkers.speed, walkers.mean_velocity[:, 1]
     upright = np.einsum("ni,ni->n", walkers.rotation[:, :, 2], walkers.up)
@@ -68,6 +78,8 @@ def reward_terms(
     speed2, rate2 = (velocity**2).sum(-1).mean(1), (rate**2).sum(-1).mean(1)
     phase = np.stack([walkers.phase, (walkers.phase + 0.5) % 1], 1)
     flat, loaded_heel = window(phase, 0.11, 0.42), window(phase, 0.05, 0.38)
+    # Elevation of the soles; it should be that of the reference while a foot swings and lands.
+    sole_error = (joints - reference) @ _SOLE - walkers.pitch[:, None]
     swing, stand = window(phase, 0.63, 0.97), window(phase, 0.04, 0.55)
     still = 1 / (1 + speed2 / 0.12**2 + rate2 / 0.6**2)
     gate = walkers.gate.value
@@ -95,6 +107,7 @@ def reward_terms(
         "speed": np.exp(-3 * (along - walkers.speed) ** 2),
         "heading": np.exp(-12 * walkers.yaw_error**2),
         "upright": np.exp(-12 * (1 - upright) - 0.2 * (qvel[:, 3:6] ** 2).sum(1)),
+        "swing": blend(np.exp(-8 * (window(phase, 0.66, 1.0) * sole_error**2).sum(1)), np.ones(n)),
         "still_foot": blend((flat * still).sum(1) / np.maximum(flat.sum(1), 0.2), 1.5 * motionless.mean(1)),
         "contact": blend(1 - np.clip(wrong_contact.sum(1), 0, 1), np.minimum(force / 200, 1).mean(1)),
         "load": np.exp(-4 * load_error),
@@ -107,7 +120,7 @@ def reward_terms(
         "jerk": (residual_change**2).sum(1) * (1 + 3 * (1 - gate)),
         "action": (action**2).sum(1),
         "impact": np.clip(touch.sum(-1).max((1, 2)) / _BODY_WEIGHT - 1.35, 0, 2.5),
-        "foot_jolt": np.clip(jolt / 50 - 1, 0, 2.5),
+        "foot_jolt": np.clip(jolt / 35 - 1, 0, 2.5),
         # Wants to stop and still drifts.
         "dawdle": np.where((walkers.speed_goal < 0.2) & (gate > 0.01), np.abs(np.clip(lag, -0.3, 1)), 0.0),
         # Ankles more than 13 cm apart sideways, or less than 9.
