@@ -33,6 +33,26 @@ OutputOption = Annotated[Path, typer.Option("--output", "-o", help="Parquet file
 NoCacheOption = Annotated[
     bool, typer.Option("--no-cache", help="Walk even if this walk is in the cache, and do not keep it there.")
 ]
+FormatOption = Annotated[
+    str,
+    typer.Option(
+        "--format",
+        help="What wrote the recording: auto finds out; or footfall, xio (x-io), sensorconnect "
+        "(MicroStrain), openshoe, matlab (imu and ts), csv (columns like gyro_x_deg_s, accel_x_g).",
+    ),
+]
+UnitOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--unit",
+        help="A unit that the file does not state: gyro=deg/s, accel=g, t=ms; may be repeated.",
+        show_default=False,
+    ),
+]
+RateOption = Annotated[
+    float | None,
+    typer.Option("--rate", help="Samples per second (Hz), for a file without time.", callback=finite),
+]
 JsonOption = Annotated[
     bool, typer.Option("--json", help="Print one JSON document instead of tables, for programs.")
 ]
@@ -288,36 +308,55 @@ def track(
         Path,
         typer.Argument(
             help="A recording, simulated or real: Parquet or CSV with t (s), gyro_x, gyro_y, gyro_z (rad/s), "
-            "accel_x, accel_y, accel_z (m/s2)."
+            "accel_x, accel_y, accel_z (m/s2), or a file of another --format."
         ),
     ],
     output: OutputOption,
     method: Annotated[str, typer.Option(help="How to navigate (see `footfall list`).")] = "hdr",
     bias_time: Annotated[
-        float,
-        typer.Option(help="Seconds at rest at the start, over which gyro bias is averaged.", callback=finite),
-    ] = 25.0,
+        float | None,
+        typer.Option(
+            help="Seconds at rest at the start, over which gyro bias is averaged; if left out, as long as it "
+            "rests, at most 25.",
+            callback=finite,
+        ),
+    ] = None,
     heading: Annotated[
         float, typer.Option(help="Heading at the start, deg, counter-clockwise from x.", callback=finite)
     ] = 0.0,
+    format: FormatOption = "auto",
+    unit: UnitOption = None,
+    rate: RateOption = None,
 ) -> None:
-    """Navigate: from a recording, simulated or real, to a track with one row a footfall."""
+    """Navigate: from a recording, simulated or real, to a track with one row a footfall.
+
+    The recording is judged by physics first; lost, doubled and clipped samples are told and handled.
+    """
+    from dataclasses import replace
+
+    from footfall.formats import parse_units, read
     from footfall.hdr.methods import require_methods
     from footfall.hdr.methods import track as navigate
     from footfall.pdr.pdr import PdrParams, StartPose
+    from footfall.pdr.rest import still_time
     from footfall.pdr.track import write_track
-    from footfall.recording import read_recording
 
     require_output(output, ".parquet", recording)
     require_methods([method])
+    sizes, start = parse_units(unit or ()), StartPose(heading=math.radians(heading))
     with blaming("--bias-time", "pdr"):
-        params = PdrParams(bias_s=bias_time)
-    start = StartPose(heading=math.radians(heading))
+        params = PdrParams() if bias_time is None else PdrParams(bias_s=bias_time)
     with ERR.status("navigating"):
-        samples = read_recording(recording)
+        samples, findings = read(recording, format, sizes=sizes, rate_hz=rate)
         with blaming(recording):
+            if bias_time is None:
+                params = replace(params, bias_s=still_time(samples, params.bias_s))
             result = navigate(samples, method, start, params)
-        write_track(result, output)
+        write_track(replace(result, meta={**result.meta, "read": findings.as_dict()}), output)
+    for sentence in findings.sentences():
+        say(f"{recording}: {sentence}")
+    if bias_time is None and params.bias_s < PdrParams().bias_s:
+        say(f"{recording}: static bias averaged over the {params.bias_s:g} s that it rests")
     say(f"{len(result)} footfalls: {output}")
 
 
@@ -363,24 +402,28 @@ def allan(
     figure: Annotated[
         Path | None, typer.Option(help="PNG file to draw the Allan deviation into.", show_default=False)
     ] = None,
+    format: FormatOption = "auto",
+    unit: UnitOption = None,
+    rate: RateOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Tell how long an IMU should rest before a walk, from its Allan deviation.
 
     The time is that after which averaging the gyros removes no more noise (T_bias of the HDR paper).
     """
+    from footfall.formats import parse_units, read
     from footfall.models.imu import draw_unit, load_spec
-    from footfall.recording import read_recording
     from footfall.scenarios.allan import allan_report, allan_table, resting_recording
 
     if figure is not None:
         require_output(figure, ".png")
     if recording is not None:
-        resting = read_recording(recording)
+        sizes = parse_units(unit or ())
+        resting, _ = read(recording, format, sizes=sizes, rate_hz=rate, walk=False)
     else:
-        unit = draw_unit(load_spec(imu), unit_seed)
+        worn = draw_unit(load_spec(imu), unit_seed)
         with ERR.status(f"resting for {hours:g} h"):
-            resting = resting_recording(unit, hours * 3600, unit_seed)
+            resting = resting_recording(worn, hours * 3600, unit_seed)
     with blaming(recording or imu):
         result = allan_report(resting, figure)
     if as_json:

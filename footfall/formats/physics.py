@@ -1,0 +1,182 @@
+"""Can a foot have moved so? Units, axes, gravity and rate of a recording, judged by mechanics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+from scipy.signal import find_peaks
+from scipy.spatial.transform import Rotation
+
+from footfall.conventions import GRAVITY
+from footfall.errors import InputError
+from footfall.pdr.stance import moving_mean
+from footfall.pdr.strapdown import integrate
+from footfall.recording import GYRO, Recording
+
+GRAVITY_TOLERANCE = 1.0  # m/s2, of the force at rest
+MISCLOSURE = (0.04, 0.16)  # g: above the first a cause is sought, above the second none need be found
+WALK_RATES = (40.0, 20_000.0)  # Hz
+MOST_CLIPPED = 0.2  # share of the samples
+STILL_S = 0.06
+REST = 0.35  # shares of RMS: stances have .03-.15, the quietest of swing .45
+STRIDES = (5, 40)  # so many are needed, so many are looked at
+GYRO_RMS = (0.02, 60.0)  # rad/s, of a walking foot
+FORCE_SPREAD = 1.0  # m/s2: less, and nobody walks
+
+_FORCES = (
+    (1.0, "they are probably in g"),
+    (1000.0, "they are probably in mg"),
+    (0.0, "gravity was probably removed from them"),
+    (32.17, "they are probably in ft/s2"),
+)
+
+
+def check_values(recording: Recording, clipped: Mapping[str, int]) -> None:
+    """Refuse a dead or saturated sensor, and stamps in another unit.
+
+    Raises
+    ------
+    InputError
+        With the likely cause.
+    """
+    for what, values in (("gyros", recording.gyro), ("accelerometers", recording.accel)):
+        if len(values) > 10 and (values == values[0]).all():
+            raise InputError(f"recording: the {what} say the same in every row: they recorded nothing")
+    for name, count in clipped.items():
+        if count > MOST_CLIPPED * len(recording.t):
+            raise InputError(
+                f"recording: {name} is at the end of its range in {count} of {len(recording.t)} samples"
+            )
+    interval = recording.interval
+    if not 1e-5 <= interval <= 1.0:
+        units = {1e-3: "ms", 1e-6: "us", 1e-9: "ns"}
+        cause = next((unit for size, unit in units.items() if 1e-4 <= interval * size <= 0.1), None)
+        guess = f": t is probably in {cause}" if cause else ""
+        raise InputError(f"recording: samples are {interval:.3g} s apart, expected 0.00001 to 1 s{guess}")
+
+
+def check_gravity(recording: Recording) -> None:
+    """Refuse accelerometers that do not measure gravity where the IMU is stillest.
+
+    Raises
+    ------
+    InputError
+        With the likely cause.
+    """
+    still = _unrest(recording)
+    quiet = still <= np.quantile(still, 0.05)
+    force = float(np.median(np.linalg.norm(recording.accel[quiet], axis=1)))
+    if abs(force - GRAVITY) > GRAVITY_TOLERANCE:
+        cause = next((f": {text}" for size, text in _FORCES if abs(force - size) <= 0.1 * max(size, 1)), "")
+        raise InputError(
+            f"recording: the accelerometers measure {force:.3g} at rest, "
+            f"expected {GRAVITY:.3g} +- {GRAVITY_TOLERANCE:g} m/s2{cause}"
+        )
+
+
+def check_walk(recording: Recording) -> None:
+    """Refuse what no walking foot can have measured.
+
+    From one moment of rest to the next, turning the force with the gyros and taking gravity away must leave
+    almost no velocity. It leaves metres a second where the gyros are in other units, or their axes are not
+    those of the accelerometers: median over strides, as a share of g. Of seven real walks right ones have
+    .016-.037, wrong ones .06-1.
+    (A sensor that gives -f instead of f passes: it is the mirror image of a possible walk.)
+
+    Raises
+    ------
+    InputError
+        With the likely cause.
+    """
+    rate = 1 / recording.interval
+    if not WALK_RATES[0] <= rate <= WALK_RATES[1]:
+        raise InputError(
+            f"recording: sampled at {rate:.3g} Hz, a walking foot needs {WALK_RATES[0]:g} Hz or more"
+        )
+    spread = float(np.linalg.norm(recording.accel, axis=1).std())
+    rms = math.sqrt(np.mean(recording.gyro**2) * 3)
+    if spread < FORCE_SPREAD:
+        return  # nobody walks: dead reckoning will say so
+    if not GYRO_RMS[0] <= rms <= GYRO_RMS[1]:
+        cause = "deg/s" if rms > GYRO_RMS[1] else "rad/s, and were taken for deg/s"
+        raise InputError(
+            f"recording: the gyros turn at {rms:.3g} rad/s RMS while the foot walks: "
+            f"they are probably in {cause}"
+        )
+    rests = _rests(recording)
+    off = _misclosure(recording, rests, np.eye(3))
+    if off is None or off <= MISCLOSURE[0]:
+        return
+    left = {cause: _misclosure(recording, rests, change) or math.inf for cause, change in _CAUSES.items()}
+    likely = min(left, key=left.__getitem__)
+    if left[likely] <= off / 2:
+        raise InputError(f"recording: turned by its gyros, gravity does not stay vertical: {likely}")
+    if off > MISCLOSURE[1]:
+        raise InputError(
+            "recording: turned by its gyros, gravity does not stay vertical: "
+            "the gyros' unit or axes do not match the accelerometers'"
+        )
+
+
+_CAUSES: Mapping[str, np.ndarray] = {
+    "the gyros are probably in deg/s": np.eye(3) * math.pi / 180,
+    "the gyros are probably in rad/s, and were taken for deg/s": np.eye(3) * 180 / math.pi,
+    "the gyros probably turn the other way about every axis": -np.eye(3),
+    **{
+        f"{name} probably turns the other way": np.diag(np.where(np.arange(3) == axis, -1.0, 1.0))
+        for axis, name in enumerate(GYRO)
+    },
+    **{
+        f"the gyros' {'xyz'[a]} and {'xyz'[b]} are probably exchanged": np.eye(3)[
+            [b if i == a else a if i == b else i for i in range(3)]
+        ]
+        for a, b in ((0, 1), (0, 2), (1, 2))
+    },
+}
+
+
+def _unrest(recording: Recording) -> np.ndarray:
+    """How unquiet the IMU is, in shares of its own RMS: whatever the units. (n,)"""
+    t = recording.t
+
+    def share(x: np.ndarray) -> np.ndarray:
+        mean = float(np.mean(x))
+        return np.sqrt(np.maximum(moving_mean(x, t, STILL_S), 0) / mean) if mean else np.zeros_like(x)
+
+    turn = share((recording.gyro**2).sum(axis=1))
+    force = np.linalg.norm(recording.accel, axis=1)
+    rest = np.median(force[turn <= np.quantile(turn, 0.1)])
+    return turn + share((force - rest) ** 2)
+
+
+def _rests(recording: Recording) -> np.ndarray:
+    """Samples at the stillest instants, at least half a second apart."""
+    still = _unrest(recording)
+    apart = max(1, round(0.5 / recording.interval))
+    return find_peaks(-still, height=-REST, distance=apart)[0]
+
+
+def _misclosure(recording: Recording, rests: np.ndarray, change: np.ndarray) -> float | None:
+    """Median over strides of the velocity left at the end over g T; None where too few strides are seen.
+
+    `change` (3, 3) is applied to the rates first.
+    """
+    gyro = recording.gyro @ change.T
+    left: list[float] = []
+    margin = max(1, round(0.02 / recording.interval))
+    for first, last in pairwise(rests):
+        t, force = recording.t[first : last + 1], recording.accel[first : last + 1]
+        duration = float(t[-1] - t[0])
+        if not 0.4 < duration < 2.0 or np.ptp(np.linalg.norm(force, axis=1)) < 3.0:
+            continue
+        up = recording.accel[max(0, first - margin) : first + margin + 1].mean(axis=0)
+        level, _ = Rotation.align_vectors([[0.0, 0.0, 1.0]], [up])
+        quaternion = level.as_quat(scalar_first=True)
+        _, _, velocity = integrate(t, gyro[first : last + 1], force, quaternion=quaternion)
+        left.append(float(np.linalg.norm(velocity[-1])) / (GRAVITY * duration))
+        if len(left) == STRIDES[1]:
+            break
+    return float(np.median(left)) if len(left) >= STRIDES[0] else None

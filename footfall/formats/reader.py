@@ -1,0 +1,142 @@
+"""Reading a recording of any known format: opened, mended, and judged by physics."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from footfall.errors import InputError
+from footfall.formats.condition import Findings, condition
+from footfall.formats.layout import LAYOUTS
+from footfall.formats.matlab import is_matlab, open_matlab
+from footfall.formats.openshoe import is_openshoe, open_openshoe
+from footfall.formats.physics import check_gravity, check_values, check_walk
+from footfall.formats.samples import Samples, Source, joined
+from footfall.formats.table import open_table
+from footfall.recording import Recording
+
+FORMATS = ("auto", *LAYOUTS, "openshoe", "matlab")
+WHOLE_ROWS = 3_000_000  # four hours at 200 Hz: what fits well into memory
+_HEAD_BYTES = 1 << 16
+
+
+def open_source(
+    path: str | os.PathLike[str],
+    format: str = "auto",
+    sizes: Mapping[str, float] | None = None,
+    rate_hz: float | None = None,
+) -> Source:
+    """Open a recording and find out its format.
+
+    Parameters
+    ----------
+    format : one of `FORMATS`
+    sizes : quantity -> size of its unit (`footfall.formats.units.parse_units`), for what the file leaves open
+        or states wrongly
+    rate_hz : samples per second, for a file without time
+
+    Raises
+    ------
+    InputError
+        No such file or format, unreadable, or without the columns it should have.
+    """
+    source, sizes = Path(path), sizes or {}
+    if format not in FORMATS:
+        raise InputError(f"format {format!r} is unknown, expected one of {', '.join(FORMATS)}")
+    if rate_hz is not None and rate_hz <= 0:
+        raise InputError(f"rate = {rate_hz:g} Hz: expected a positive number")
+    if not source.is_file():
+        raise InputError(f"{source}: no such file")
+    with open(source, "rb") as file:
+        head = file.read(_HEAD_BYTES)
+    if not head:
+        raise InputError(f"{source}: empty")
+    if format == "openshoe" or (format == "auto" and is_openshoe(head)):
+        if not is_openshoe(head):
+            raise InputError(f"{source}: not a file of OpenShoe's recorder")
+        return open_openshoe(source)
+    if format == "matlab" or (format == "auto" and is_matlab(source, head)):
+        return open_matlab(source, sizes)
+    return open_table(source, head, format, sizes, rate_hz)
+
+
+def read(
+    path: str | os.PathLike[str],
+    format: str = "auto",
+    *,
+    sizes: Mapping[str, float] | None = None,
+    rate_hz: float | None = None,
+    walk: bool = True,
+) -> tuple[Recording, Findings]:
+    """Read a recording whole, mend its samples (`condition`) and judge it by physics.
+
+    Parameters
+    ----------
+    format, sizes, rate_hz : as in `open_source`
+    walk : whether a walking foot is expected; False for a sensor at rest
+
+    Returns
+    -------
+    The recording, in SI, with t from its first sample (Footfall's own keep theirs), and what was found.
+
+    Raises
+    ------
+    InputError
+        What `open_source`, `condition` and the checks of `footfall.formats.physics` refuse; or more than
+        `WHOLE_ROWS` rows.
+    """
+    source = open_source(path, format, sizes, rate_hz)
+    try:
+        samples, findings = condition(joined(source.blocks), source.format)
+        findings = replace(findings, notes=tuple(source.notes))
+        recording = as_recording(samples, source, findings)
+        judge(recording, findings, walk)
+    except InputError as error:
+        sentence = str(error).removeprefix("recording: ").removeprefix(f"{path}: ")
+        raise InputError(f"{path}: {sentence}") from None
+    return recording, findings
+
+
+def as_recording(samples: Samples, source: Source, findings: Findings) -> Recording:
+    """Mended samples as a recording, whose provenance says how they were read."""
+    start = 0.0 if source.format == "footfall" else samples.t[0]
+    return Recording(
+        t=samples.t - start,
+        gyro=samples.gyro,
+        accel=samples.accel,
+        temperature=samples.temperature,
+        meta={**source.meta, "read": findings.as_dict()},
+    )
+
+
+def judge(recording: Recording, findings: Findings, walk: bool) -> None:
+    """Every check of `footfall.formats.physics` that applies.
+
+    Raises
+    ------
+    InputError
+        What they refuse.
+    """
+    check_values(recording, dict(findings.clipped))
+    check_gravity(recording)
+    if walk:
+        check_walk(recording)
+
+
+def merged(first: Findings, second: Findings) -> Findings:
+    """What was found in two blocks of one file."""
+    clipped = dict(first.clipped)
+    for name, count in second.clipped:
+        clipped[name] = clipped.get(name, 0) + count
+    return replace(
+        first,
+        rows=first.rows + second.rows,
+        empty=first.empty + second.empty,
+        doubled=first.doubled + second.doubled,
+        filled=first.filled + second.filled,
+        longest_gap_s=max(first.longest_gap_s, second.longest_gap_s),
+        jitter_pct=max(first.jitter_pct, second.jitter_pct),
+        clipped=tuple(clipped.items()),
+    )
