@@ -2,56 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 from types import MappingProxyType
 
-from footfall import __version__
 from footfall.errors import InputError
-from footfall.hdr.correct import paper_positions as eq_12
-from footfall.hdr.correct import turned_positions
-from footfall.hdr.filtered import filter_track
-from footfall.hdr.hdr import HdrParams, trace
-from footfall.pdr.filtering import Corrector, Filtered, run_filter
-from footfall.pdr.footfalls import Footfalls
+from footfall.hdr.directions import DirectionParams
+from footfall.hdr.hde import Hde, Hde2010Params, HdeParams
+from footfall.hdr.hdr import HdrParams
+from footfall.hdr.ihde import Ihde, IhdeParams
+from footfall.hdr.jimenez import FilterHdr, Jimenez, JimenezParams
+from footfall.hdr.tracks import Reckoning, corrected_track, hde_2010_track, hdr_track, iez_track, pdr_track
 from footfall.pdr.ins import FilterSettings
-from footfall.pdr.pdr import Detected, PdrParams, StartPose, dead_reckon, detect
+from footfall.pdr.pdr import PdrParams, StartPose
 from footfall.pdr.track import Track
 from footfall.recording import Recording
-
-# A plain dict: tracks travel between processes, and a mapping proxy cannot be pickled.
-HDR_UNITS: Mapping[str, str] = {
-    "raw_rate": "rad/s",
-    "rate_once": "rad/s",
-    "rate_twice": "rad/s",
-    "attenuator": "",
-    "integrator": "rad/s",
-}
-
-
-@dataclass(frozen=True)
-class Reckoning:
-    """A recording, where it starts, and its footfalls, computed once for all the methods that ask."""
-
-    recording: Recording
-    start: StartPose = field(default_factory=StartPose)
-    pdr: PdrParams = field(default_factory=PdrParams)
-
-    @cached_property
-    def footfalls(self) -> Footfalls:
-        """Dead reckoning of the recording."""
-        return dead_reckon(self.recording, self.pdr, self.start, self.detected)
-
-    @cached_property
-    def detected(self) -> Detected:
-        """When the foot is at rest."""
-        return detect(self.recording, self.pdr)
-
-    def filtered(self, settings: FilterSettings, corrector: Corrector | None = None) -> Filtered:
-        """The error-state filter over the recording, with a heading method or without."""
-        return run_filter(self.recording, settings, self.pdr, self.start, corrector, found=self.detected)
 
 
 @dataclass(frozen=True)
@@ -70,49 +35,28 @@ class Method:
     run: Callable[[Reckoning], Track]
 
 
-def pdr_track(footfalls: Footfalls) -> Track:
-    """Dead reckoning as it is: position and heading without any heading correction."""
-    return Track(
-        t=footfalls.t,
-        position=footfalls.position,
-        heading=footfalls.heading,
-        meta={"method": "pdr", "version": __version__},
-    )
+def _counted(reckoning: Reckoning) -> DirectionParams:
+    """Dominant directions counted from the heading at the start, which is 0 deg in the papers.
 
-
-def hdr_track(
-    footfalls: Footfalls, params: HdrParams | None = None, *, name: str = "hdr", paper_positions: bool = False
-) -> Track:
-    """HDR's heading and the track turned by it.
-
-    Parameters
-    ----------
-    params : `HdrParams.basic()` for the controller of the paper's section 2
-    name : of the method, for the track's provenance
-    paper_positions : positions by the paper's Eq. 12 instead of turned displacements
-
-    Returns
-    -------
-    Track
-        Evidence: raw rate, the rate filtered once and twice, attenuator A and integrator I.
+    So the foot may point beside the path: at the start it does so as much as later.
     """
-    params = params or HdrParams()
-    found = trace(footfalls, params)
-    columns = (found.raw, found.once, found.twice, found.attenuator, found.integrator)
-    settings = {key: value for key, value in asdict(params).items() if math.isfinite(value)}
-    return Track(
-        t=footfalls.t,
-        position=(eq_12 if paper_positions else turned_positions)(footfalls, found.heading),
-        heading=found.heading,
-        evidence=dict(zip(HDR_UNITS, columns, strict=True)),
-        units=HDR_UNITS,
-        meta={"method": name, "version": __version__, "params": settings, "paper_positions": paper_positions},
-    )
+    return DirectionParams(reference=reckoning.start.heading)
 
 
-def iez_track(reckoning: Reckoning, settings: FilterSettings, *, name: str) -> Track:
-    """The error-state filter by itself: zero-velocity updates, no heading correction."""
-    return filter_track(reckoning.filtered(settings), settings, name=name)
+def _hde(reckoning: Reckoning) -> Hde:
+    return Hde(HdeParams(directions=_counted(reckoning)))
+
+
+def _ihde(reckoning: Reckoning) -> Ihde:
+    return Ihde(IhdeParams(directions=_counted(reckoning)))
+
+
+def _learning(reckoning: Reckoning) -> Ihde:
+    return Ihde(IhdeParams(fallback=False, directions=DirectionParams(reference=None)))
+
+
+def _jimenez(reckoning: Reckoning) -> Jimenez:
+    return Jimenez(JimenezParams(directions=_counted(reckoning)))
 
 
 METHODS: Mapping[str, Method] = MappingProxyType(
@@ -135,6 +79,46 @@ METHODS: Mapping[str, Method] = MappingProxyType(
                 "iez-paper",
                 "IEZ as in Deng et al. (2018): zero velocity at every still sample",
                 lambda r: iez_track(r, FilterSettings.paper(), name="iez-paper"),
+            ),
+            Method(
+                "hdr-filter",
+                "iez, and no turn where the heading hardly changes (Jimenez 2010)",
+                lambda r: corrected_track(r, FilterHdr(), name="hdr-filter"),
+            ),
+            Method(
+                "hde-2010",
+                "Heuristic Drift Elimination (2010) after pdr: stepwise towards dominant directions",
+                lambda r: hde_2010_track(r.footfalls, Hde2010Params(directions=_counted(r))),
+            ),
+            Method(
+                "hde",
+                "iez, and always the nearest of four dominant directions for the heading",
+                lambda r: corrected_track(r, _hde(r), name="hde"),
+            ),
+            Method(
+                "ihde",
+                "iez, and IHDE (Deng et al. 2018): dominant directions or the mean heading, on straights",
+                lambda r: corrected_track(r, _ihde(r), name="ihde"),
+            ),
+            Method(
+                "ihde-learned",
+                "ihde with directions learned from the walk, and no mean heading",
+                lambda r: corrected_track(r, _learning(r), name="ihde-learned"),
+            ),
+            Method(
+                "ihde-jimenez",
+                "iez, and iHDE (Jimenez 2011): dominant directions on straights, trusted by their nearness",
+                lambda r: corrected_track(r, _jimenez(r), name="ihde-jimenez"),
+            ),
+            Method(
+                "hde-paper",
+                "hde on the filter of iez-paper",
+                lambda r: corrected_track(r, _hde(r), FilterSettings.paper(), name="hde-paper"),
+            ),
+            Method(
+                "ihde-paper",
+                "ihde on the filter of iez-paper",
+                lambda r: corrected_track(r, _ihde(r), FilterSettings.paper(), name="ihde-paper"),
             ),
         )
     }

@@ -1,0 +1,132 @@
+"""Heuristic Drift Elimination (Borenstein and Ojeda 2010): people in buildings walk along few directions.
+
+Two forms: a binary I-controller on dead reckoning's headings, as in 2010, and a measurement that is fed to
+the filter at every footfall, as Deng et al. (2018) compare it with theirs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from footfall.errors import InputError
+from footfall.hdr.directions import DirectionParams, Directions, deviation
+from footfall.pdr.filtering import Step
+from footfall.pdr.footfalls import Footfalls
+
+
+@dataclass(frozen=True)
+class Hde2010Params:
+    """The controller of 2010, on the angle.
+
+    Attributes
+    ----------
+    i_c : rad, fixed increment of the correction per footfall; i_c over the stride time is the largest drift
+        that it can keep up with
+    theta_w : rad/s, rate of turn over a stride above which it rests, and below which it slows down; infinite
+        for a controller that never does
+    directions : the dominant directions, which must be given
+    """
+
+    i_c: float = math.radians(0.3)
+    theta_w: float = math.radians(15.0)
+    directions: DirectionParams = field(default_factory=DirectionParams)
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.i_c < math.inf:
+            raise InputError(f"hde-2010: i_c = {self.i_c} rad, expected 0 or more")
+        if not self.theta_w > 0:
+            raise InputError(f"hde-2010: theta_w = {self.theta_w} rad/s, expected a positive number")
+        if self.directions.reference is None:
+            raise InputError("hde-2010: directions.reference is missing; only filters learn directions")
+
+
+class Hde2010Trace(NamedTuple):
+    """The controller over a walk, each (n,).
+
+    deviation : rad, from the nearest direction, before the footfall's own correction; attenuator : A;
+    correction : C, rad; heading : rad
+    """
+
+    deviation: np.ndarray
+    attenuator: np.ndarray
+    correction: np.ndarray
+    heading: np.ndarray
+
+
+HDE_2010_UNITS: Mapping[str, str] = {"deviation": "rad", "attenuator": "", "correction": "rad"}
+
+
+def hde_2010(footfalls: Footfalls, params: Hde2010Params | None = None) -> Hde2010Trace:
+    """HDE on dead reckoning's headings, without a filter.
+
+    C_i = C_{i-1} - A_i sign(dev(psi_raw,i + C_{i-1})) i_c and psi_i = psi_raw,i + C_i, where dev is the
+    deviation from the nearest dominant direction and sign(0) = 0. The original was not at hand: this is its
+    controller as others describe it, with HDR's attenuator A_i = max(0, 1 - |raw_i| / theta_w).
+    """
+    params = params or Hde2010Params()
+    count, base = params.directions.count, params.directions.reference
+    assert base is not None
+    n = len(footfalls)
+    attenuator = np.maximum(0.0, 1.0 - np.abs(footfalls.rate) / params.theta_w)
+    off, correction = np.zeros(n), np.zeros(n)
+    now = 0.0
+    for i in range(1, n):
+        off[i] = deviation(float(footfalls.heading[i]) + now, base, count)
+        now -= float(attenuator[i] * np.sign(off[i])) * params.i_c
+        correction[i] = now
+    return Hde2010Trace(off, attenuator, correction, footfalls.heading + correction)
+
+
+@dataclass(frozen=True)
+class HdeParams:
+    """HDE as a measurement in the filter.
+
+    Attributes
+    ----------
+    sigma : rad, standard deviation of the heading measurement, one a footfall
+    directions : the dominant directions
+    """
+
+    sigma: float = math.radians(20.0)
+    directions: DirectionParams = field(default_factory=DirectionParams)
+
+    def __post_init__(self) -> None:
+        if not 0 < self.sigma < math.inf:
+            raise InputError(f"hde: sigma = {self.sigma} rad, expected a positive number")
+
+
+class HdeRow(NamedTuple):
+    """What HDE did at a footfall; NaN where there was nothing to say."""
+
+    reference: float = math.nan
+    innovation: float = math.nan
+
+
+class Hde:
+    """HDE as the filter asks it: always the nearest dominant direction, whatever the path.
+
+    Attributes
+    ----------
+    params : its constants
+    rows : evidence, from footfall 0 on, of which nobody asks
+    """
+
+    units: Mapping[str, str] = {"reference": "rad", "innovation": "rad"}
+
+    def __init__(self, params: HdeParams | None = None) -> None:
+        self.params = params or HdeParams()
+        self.rows = [HdeRow()]
+        self._directions = Directions(self.params.directions)
+
+    def __call__(self, step: Step) -> tuple[float, float] | None:
+        """Innovation (rad, truth - estimate) and its standard deviation (rad), or None."""
+        self._directions.learn(step.heading)
+        nearest = self._directions.nearest(step.heading)
+        row = HdeRow() if nearest is None else HdeRow(nearest, nearest - step.heading)
+        self.rows.append(row)
+        return None if nearest is None else (row.innovation, self.params.sigma)

@@ -1,0 +1,167 @@
+"""Two heading measurements of Jimenez, Seco, Prieto and Guevara for the filter: HDR (2010) and iHDE (2011).
+
+Both are reconstructions: of the second only the abstract was read (straightness over five strides, and an
+orientation error that is fed to the filter together with the confidence in it), of the first what others say.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from footfall.conventions import wrap
+from footfall.errors import InputError
+from footfall.hdr.directions import DirectionParams, Directions
+from footfall.hdr.straightness import circular_mean
+from footfall.pdr.filtering import Step
+
+
+@dataclass(frozen=True)
+class FilterHdrParams:
+    """HDR in the filter: while somebody walks straight, the heading is what it was.
+
+    Attributes
+    ----------
+    memory : footfalls before this one whose mean heading is compared with
+    gate : rad, a larger difference is a turn and says nothing
+    sigma : rad, standard deviation of the heading measurement, one a footfall
+    """
+
+    memory: int = 2
+    gate: float = math.radians(4.0)
+    sigma: float = 0.1
+
+    def __post_init__(self) -> None:
+        if self.memory < 1:
+            raise InputError(f"hdr-filter: memory = {self.memory}, expected at least 1 footfall")
+        if not self.gate >= 0:
+            raise InputError(f"hdr-filter: gate = {self.gate} rad, expected 0 or more")
+        if not 0 < self.sigma < math.inf:
+            raise InputError(f"hdr-filter: sigma = {self.sigma} rad, expected a positive number")
+
+
+class FilterHdrRow(NamedTuple):
+    """What HDR saw and did at a footfall; NaN where there was nothing to say."""
+
+    change: float = math.nan
+    straight: float = 0.0
+    innovation: float = math.nan
+
+
+class FilterHdr:
+    """HDR as a measurement of no turn, which the filter spreads over heading and gyro bias by itself.
+
+    change = psi_s - mean(psi_{s-1}, psi_{s-2}); where |change| < gate, the innovation is -change.
+
+    Attributes
+    ----------
+    params : its constants
+    rows : evidence, from footfall 0 on, of which nobody asks
+    """
+
+    units: Mapping[str, str] = {"change": "rad", "straight": "", "innovation": "rad"}
+
+    def __init__(self, params: FilterHdrParams | None = None) -> None:
+        self.params = params or FilterHdrParams()
+        self.rows = [FilterHdrRow()]
+        self._before: deque[float] = deque(maxlen=self.params.memory)
+
+    def __call__(self, step: Step) -> tuple[float, float] | None:
+        """Innovation (rad, truth - estimate) and its standard deviation (rad), or None."""
+        row = FilterHdrRow()
+        if len(self._before) == self.params.memory:
+            change = float(wrap(step.heading - circular_mean(self._before)))
+            straight = abs(change) < self.params.gate
+            row = FilterHdrRow(change, float(straight), -change if straight else math.nan)
+        self._before.append(step.heading)
+        self.rows.append(row)
+        return (row.innovation, self.params.sigma) if row.straight else None
+
+
+@dataclass(frozen=True)
+class JimenezParams:
+    """iHDE: HDE on straights alone, trusted the less the further it has to turn.
+
+    Attributes
+    ----------
+    window : footfalls that are judged together
+    gate : rad, all of them must lie this near to their mean heading for a straight
+    sigma : rad, standard deviation of the heading measurement where mean heading and direction agree
+    scale : rad, residual at which that standard deviation has doubled: sigma (1 + (residual / scale)^2)
+    directions : the dominant directions
+    """
+
+    window: int = 5
+    gate: float = math.radians(6.0)
+    sigma: float = math.radians(4.0)
+    scale: float = math.radians(5.0)
+    directions: DirectionParams = field(default_factory=DirectionParams)
+
+    def __post_init__(self) -> None:
+        if self.window < 2:
+            raise InputError(f"ihde-jimenez: window = {self.window}, expected at least 2 footfalls")
+        for name in ("gate", "sigma", "scale"):
+            if not 0 < getattr(self, name) < math.inf:
+                raise InputError(f"ihde-jimenez: {name} = {getattr(self, name)} rad, expected more than 0")
+
+
+class JimenezRow(NamedTuple):
+    """What iHDE saw and did at a footfall; NaN where there was nothing to say."""
+
+    spread: float = math.nan
+    straight: float = 0.0
+    reference: float = math.nan
+    residual: float = math.nan
+    innovation: float = math.nan
+    innovation_sd: float = math.nan
+
+
+class Jimenez:
+    """iHDE as the filter asks it, footfall by footfall.
+
+    Attributes
+    ----------
+    params : its constants
+    rows : evidence, from footfall 0 on, of which nobody asks
+    """
+
+    units: Mapping[str, str] = {
+        "spread": "rad",
+        "straight": "",
+        "reference": "rad",
+        "residual": "rad",
+        "innovation": "rad",
+        "innovation_sd": "rad",
+    }
+
+    def __init__(self, params: JimenezParams | None = None) -> None:
+        self.params = params or JimenezParams()
+        self.rows = [JimenezRow()]
+        self._directions = Directions(self.params.directions)
+        self._headings: deque[float] = deque(maxlen=self.params.window)
+
+    def __call__(self, step: Step) -> tuple[float, float] | None:
+        """Innovation (rad, truth - estimate) and its standard deviation (rad), or None."""
+        row = self._judge(step)
+        self.rows.append(row)
+        return None if math.isnan(row.innovation) else (row.innovation, row.innovation_sd)
+
+    def _judge(self, step: Step) -> JimenezRow:
+        params = self.params
+        self._headings.append(step.heading)
+        if len(self._headings) < params.window:
+            return JimenezRow()
+        mean = circular_mean(self._headings)
+        spread = max(abs(float(wrap(heading - mean))) for heading in self._headings)
+        if spread >= params.gate:
+            return JimenezRow(spread)
+        self._directions.learn(mean)
+        nearest = self._directions.nearest(mean)
+        if nearest is None:
+            return JimenezRow(spread, 1.0)
+        residual = nearest - mean
+        sd = params.sigma * (1 + (residual / params.scale) ** 2)
+        return JimenezRow(spread, 1.0, nearest, residual, float(wrap(nearest - step.heading)), sd)
