@@ -139,35 +139,87 @@ def propagate(x, p, phi, gyro, accel, dt, noise, gap):  # type: ignore[no-untype
 
 
 @njit(cache=True, nogil=True)
-def _measure(p, dx, h, first, last, z, variance):  # type: ignore[no-untyped-def]
-    """One scalar measurement z = h dx + noise in Joseph form; h (n,) is zero outside first..last-1."""
+def _gain(p, h, first, last, variance, gain):  # type: ignore[no-untyped-def]
+    """Kalman gain of the scalar measurement h (zero outside first..last-1), into `gain`."""
     n = p.shape[0]
-    ph, gain = np.zeros(n), np.empty(n)
+    gain[:] = 0.0
     for k in range(first, last):
-        if h[k] != 0.0:
-            for i in range(n):
-                ph[i] += h[k] * p[k, i]
-    s, known = variance, 0.0
+        for i in range(n):
+            gain[i] += h[k] * p[k, i]
+    s = variance
     for k in range(first, last):
-        s += h[k] * ph[k]
-        known += h[k] * dx[k]
+        s += h[k] * gain[k]
     for i in range(n):
-        gain[i] = ph[i] / s
-        dx[i] += gain[i] * (z - known)
-    # (I - K h) P (I - K h)' + K R K'
+        gain[i] /= s
+
+
+@njit(cache=True, nogil=True)
+def _joseph(p, h, first, last, variance, gain):  # type: ignore[no-untyped-def]
+    """p <- (I - gain h) p (I - gain h)' + gain variance gain': right for any gain."""
+    n = p.shape[0]
+    row = np.zeros(n)
+    for k in range(first, last):
+        for i in range(n):
+            row[i] += h[k] * p[k, i]
     for i in range(n):
-        left = 0.0
         for k in range(n):
-            p[i, k] -= gain[i] * ph[k]
+            p[i, k] -= gain[i] * row[k]
+        left = -variance * gain[i]
         for k in range(first, last):
             left += p[i, k] * h[k]
-        left -= variance * gain[i]
         for k in range(n):
             p[i, k] -= left * gain[k]
     for i in range(n):
         for k in range(i):
             mean = 0.5 * (p[i, k] + p[k, i])
             p[i, k], p[k, i] = mean, mean
+
+
+@njit(cache=True, nogil=True)
+def _take_in(dx, h, first, last, z, gain):  # type: ignore[no-untyped-def]
+    """Add to dx what the measurement z = h dx says."""
+    for k in range(first, last):
+        z -= h[k] * dx[k]
+    for i in range(dx.shape[0]):
+        dx[i] += gain[i] * z
+
+
+@njit(cache=True, nogil=True)
+def _with_known(p, row):  # type: ignore[no-untyped-def]
+    """p <- what it were if row dx was known."""
+    n = p.shape[0]
+    pr = np.zeros(n)
+    for k in range(n):
+        if row[k] != 0.0:
+            for i in range(n):
+                pr[i] += row[k] * p[k, i]
+    s, scale = 0.0, 0.0
+    for k in range(n):
+        s += row[k] * pr[k]
+        scale += row[k] * row[k] * p[k, k]
+    if s > 1e-12 * scale:
+        for i in range(n):
+            for k in range(n):
+                p[i, k] -= pr[i] * pr[k] / s
+
+
+@njit(cache=True, nogil=True)
+def _with_known_turn(x, p):  # type: ignore[no-untyped-def]
+    """p if the heading was known, and whatever the gyro's errors turn about the vertical."""
+    n = p.shape[0]
+    m = matrix((x[0], x[1], x[2], x[3]))
+    known, row = p.copy(), np.zeros(n)
+    row[8] = 1.0
+    _with_known(known, row)
+    row[8] = 0.0
+    row[12], row[13], row[14] = m[6], m[7], m[8]
+    _with_known(known, row)
+    if n > 15:
+        for k in range(3):
+            row[:] = 0.0
+            row[15 + k], row[18 + k], row[21 + k] = m[6], m[7], m[8]
+            _with_known(known, row)
+    return known
 
 
 @njit(cache=True, nogil=True)
@@ -186,13 +238,22 @@ def inject(x, dx):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def rest(x, p, gyro, accel, velocity_variance, rate_variance):  # type: ignore[no-untyped-def]
-    """Zero velocity (Eq. 6, 11), and zero rate where `rate_variance` > 0; returns the error injected."""
+def rest(x, p, gyro, accel, velocity_variance, rate_variance, turns):  # type: ignore[no-untyped-def]
+    """Zero velocity (Eq. 6, 11), and zero rate where `rate_variance` > 0; returns the error injected.
+
+    turns : whether the velocity may correct the heading and the gyro's errors about the vertical. If not, the
+    gain is that of a filter which knows them, so that they neither change nor let anything else change
+    """
     n = p.shape[0]
-    dx, h = np.zeros(n), np.zeros(n)
+    dx, h, gain = np.zeros(n), np.zeros(n), np.empty(n)
+    known = p if turns else _with_known_turn(x, p)
     for i in range(3):
         h[3 + i] = 1.0
-        _measure(p, dx, h, 3 + i, 4 + i, -x[4 + i], velocity_variance)
+        _gain(known, h, 3 + i, 4 + i, velocity_variance, gain)
+        _take_in(dx, h, 3 + i, 4 + i, -x[4 + i], gain)
+        _joseph(p, h, 3 + i, 4 + i, velocity_variance, gain)
+        if not turns:
+            _joseph(known, h, 3 + i, 4 + i, velocity_variance, gain)
         h[3 + i] = 0.0
     if rate_variance > 0.0:
         f, w = corrected(x, gyro, accel)
@@ -203,7 +264,9 @@ def rest(x, p, gyro, accel, velocity_variance, rate_variance):  # type: ignore[n
                 for k in range(3):
                     h[15 + 3 * i + k] = f[k]
                 last = 18 + 3 * i
-            _measure(p, dx, h, 12 + i, last, w[i], rate_variance)
+            _gain(p, h, 12 + i, last, rate_variance, gain)
+            _take_in(dx, h, 12 + i, last, w[i], gain)
+            _joseph(p, h, 12 + i, last, rate_variance, gain)
             h[:] = 0.0
     inject(x, dx)
     return dx
@@ -221,15 +284,17 @@ def heading_row(x):  # type: ignore[no-untyped-def]
 def heading(x, p, innovation, variance):  # type: ignore[no-untyped-def]
     """The heading is off by `innovation`, truth - estimate (Eq. 27, 28); returns the error injected."""
     n = p.shape[0]
-    dx, h = np.zeros(n), np.zeros(n)
+    dx, h, gain = np.zeros(n), np.zeros(n), np.empty(n)
     h[6], h[7], h[8] = heading_row(x)
-    _measure(p, dx, h, 6, 9, innovation, variance)
+    _gain(p, h, 6, 9, variance, gain)
+    _take_in(dx, h, 6, 9, innovation, gain)
+    _joseph(p, h, 6, 9, variance, gain)
     inject(x, dx)
     return dx
 
 
 @njit(cache=True, nogil=True)
-def run(x, p, phi, before, t, gyro, accel, still, noise, gap, velocity_variance, rate_variance):  # type: ignore[no-untyped-def]
+def run(x, p, phi, before, t, gyro, accel, still, noise, gap, velocity_variance, rate_variance, turns):  # type: ignore[no-untyped-def]
     """All samples in order, each over the interval since the one before; `before` is the state's stamp.
 
     still : (n,) 1 for zero velocity, 2 for zero rate too
@@ -238,4 +303,4 @@ def run(x, p, phi, before, t, gyro, accel, still, noise, gap, velocity_variance,
         propagate(x, p, phi, gyro[k], accel[k], t[k] - before, noise, gap)
         before = t[k]
         if still[k] > 0:
-            rest(x, p, gyro[k], accel[k], velocity_variance, rate_variance if still[k] > 1 else 0.0)
+            rest(x, p, gyro[k], accel[k], velocity_variance, rate_variance if still[k] > 1 else 0.0, turns)

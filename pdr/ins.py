@@ -28,13 +28,18 @@ MOVING, ZERO_VELOCITY, ZERO_RATE = 0, 1, 2
 class FilterSettings:
     """What the filter believes and which errors it estimates.
 
-    The default is what walking feet allow: one update a stance. `paper()` is the filter of the paper.
+    The default is what walking feet allow: one update a stance, which leaves the heading to the gyro.
+    `paper()` is the filter of the paper.
 
     Attributes
     ----------
     update : "stance": zero velocity once a stance, at its quietest instant (and every `StanceParams.reset_s`
         while standing still); "sample": at every sample that the detector calls still, as in the paper
     sigma_velocity : m/s, of the zero velocity
+    velocity_turns : True lets zero velocity correct the heading and the gyro bias about the vertical, as in
+        the paper. A bias b turns a stride of length L sideways by b L, so that every velocity which a foot
+        has to the side when it is called still passes for a bias. False leaves them what they are, and the
+        gain is that of a filter that knows them: else their growing variance would be put into the tilt
     accel_noise, gyro_noise : m/s2/sqrt(Hz), rad/s/sqrt(Hz), of the samples; far above a data sheet's, because
         the shocks of walking meet scale factors and finite bandwidth
     accel_bias_walk, gyro_bias_walk : m/s2/sqrt(s), rad/s/sqrt(s), growth of the biases
@@ -51,14 +56,15 @@ class FilterSettings:
 
     update: Literal["stance", "sample"] = "stance"
     sigma_velocity: float = 0.01
+    velocity_turns: bool = False
     accel_noise: float = 0.03
-    gyro_noise: float = 0.0005
+    gyro_noise: float = 0.002
     accel_bias_walk: float = 1e-4
-    gyro_bias_walk: float = 1e-6
+    gyro_bias_walk: float = 1e-5
     tilt_sd: float = math.radians(0.1)
     heading_sd: float = 0.0
     accel_bias_sd: float = 0.05
-    gyro_bias_sd: float = math.radians(0.02)
+    gyro_bias_sd: float = math.radians(0.1)
     estimate_accel_bias: bool = True
     estimate_gyro_bias: bool = True
     zaru: bool = False
@@ -96,6 +102,7 @@ class FilterSettings:
         return cls(
             update="sample",
             sigma_velocity=0.01,
+            velocity_turns=True,
             accel_noise=0.5 * per_sample,
             gyro_noise=math.radians(0.5) * per_sample,
             accel_bias_sd=0.3,
@@ -190,6 +197,7 @@ class InertialFilter:
             self._noise,
             self._gap,
             *self._variances,
+            self.settings.velocity_turns,
         )
         self.t = float(t[-1])
         self._sample = np.array(gyro[-1], dtype=float), np.array(accel[-1], dtype=float)
@@ -202,8 +210,9 @@ class InertialFilter:
         (states,) the error that was put right.
         """
         velocity, rate = self._variances
+        rate = rate if update == ZERO_RATE else 0.0
         return np.asarray(
-            kernels.rest(self._x, self._p, *self._sample, velocity, rate if update == ZERO_RATE else 0.0)
+            kernels.rest(self._x, self._p, *self._sample, velocity, rate, self.settings.velocity_turns)
         )
 
     def correct_heading(self, innovation: float, sd: float) -> np.ndarray:
