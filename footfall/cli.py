@@ -81,18 +81,21 @@ def list_(as_json: JsonOption = False) -> None:
     from footfall.hdr.methods import METHODS
     from footfall.models.body import MOUNTS
     from footfall.models.imu import EFFECTS, load_spec, stock_specs
+    from footfall.pdr.detectors import DETECTORS, summary
     from footfall.scenarios.report import new_table, titled
     from footfall.scenarios.scenario import load_scenario, stock_scenarios
 
     scenarios = {name: load_scenario(name) for name in stock_scenarios()}
     imus = {name: load_spec(name).name for name in stock_specs()}
     methods = {name: method.description for name, method in METHODS.items()}
+    detectors = {name: summary(found) for name, found in DETECTORS.items()}
     if as_json:
         print_json(
             {
                 "scenarios": {name: scenario.description for name, scenario in scenarios.items()},
                 "imus": imus,
                 "methods": methods,
+                "detectors": detectors,
                 "mounts": list(MOUNTS),
                 "effects": list(EFFECTS),
             }
@@ -103,7 +106,11 @@ def list_(as_json: JsonOption = False) -> None:
         length = f"{scenario.path.route.length:.0f}"
         table.add_row(name, scenario.description, length, f"{scenario.pace:g}", f"{scenario.walks}")
     OUT.print(titled("Scenarios", table))
-    for title, rows in (("IMUs", imus), ("Methods, from a recording to a track", methods)):
+    for title, rows in (
+        ("IMUs", imus),
+        ("Methods, from a recording to a track", methods),
+        ("Detectors of rest", detectors),
+    ):
         table = new_table("name", "what", left=2)
         for name, text in rows.items():
             table.add_row(name, text)
@@ -313,6 +320,9 @@ def track(
     ],
     output: OutputOption,
     method: Annotated[str, typer.Option(help="How to navigate (see `footfall list`).")] = "hdr",
+    detector: Annotated[
+        str, typer.Option(help="What tells that the foot is at rest (see `footfall list`).")
+    ] = "threshold",
     bias_time: Annotated[
         float | None,
         typer.Option(
@@ -337,6 +347,7 @@ def track(
     from footfall.formats import parse_units, read
     from footfall.hdr.methods import require_methods
     from footfall.hdr.methods import track as navigate
+    from footfall.pdr.detectors import require_detector
     from footfall.pdr.pdr import PdrParams, StartPose
     from footfall.pdr.rest import still_time
     from footfall.pdr.track import write_track
@@ -346,13 +357,16 @@ def track(
     sizes, start = parse_units(unit or ()), StartPose(heading=math.radians(heading))
     with blaming("--bias-time", "pdr"):
         params = PdrParams() if bias_time is None else PdrParams(bias_s=bias_time)
+    params = replace(params, detector=require_detector(detector))
     with ERR.status("navigating"):
         samples, findings = read(recording, format, sizes=sizes, rate_hz=rate)
         with blaming(recording):
             if bias_time is None:
                 params = replace(params, bias_s=still_time(samples, params.bias_s))
             result = navigate(samples, method, start, params)
-        write_track(replace(result, meta={**result.meta, "read": findings.as_dict()}), output)
+        write_track(
+            replace(result, meta={**result.meta, "read": findings.as_dict(), "detector": detector}), output
+        )
     for sentence in findings.sentences():
         say(f"{recording}: {sentence}")
     if bias_time is None and params.bias_s < PdrParams().bias_s:

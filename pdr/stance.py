@@ -42,7 +42,8 @@ class ThresholdDetector:
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
         rate = np.linalg.norm(moving_mean(gyro, t, self.window_s), axis=1)
         force = np.linalg.norm(moving_mean(accel, t, self.window_s), axis=1)
-        return np.maximum(rate / self.gyro_max, np.abs(force - GRAVITY) / self.accel_max)
+        score = np.maximum(rate / self.gyro_max, np.abs(force - GRAVITY) / self.accel_max)
+        return np.where(np.isnan(score), np.inf, score)
 
 
 @dataclass(frozen=True)
@@ -78,8 +79,13 @@ class Stances:
 def moving_mean(values: np.ndarray, t: np.ndarray, window_s: float) -> np.ndarray:
     """Mean of (n, ...) values over a centred window of `window_s` seconds, cut at the record's ends.
 
-    The window is one of time, not of samples, so that dropped samples and other rates change little.
+    The window is one of time, not of samples, so that dropped samples and other rates change little. A mean
+    over a value that is not finite is NaN; other windows do not feel it.
     """
+    finite = np.isfinite(values)
+    if not finite.all():
+        share = moving_mean(finite.astype(float), t, window_s)
+        return np.where(share < 1, np.nan, moving_mean(np.where(finite, values, 0.0), t, window_s))
     slack = 1e-6  # stamps are decimal numbers: a sample on the window's edge counts
     low = np.searchsorted(t, t - window_s / 2 - slack)
     high = np.searchsorted(t, t + window_s / 2 + slack)
