@@ -268,8 +268,18 @@ def render(
 
 @app.command()
 def record(
-    walk: Annotated[Path, typer.Argument(help="A walk that `footfall walk` wrote.")],
     output: OutputOption,
+    walk: Annotated[
+        Path | None, typer.Argument(help="A walk that `footfall walk` wrote.", show_default=False)
+    ] = None,
+    from_recording: Annotated[
+        Path | None,
+        typer.Option(
+            help="Instead of a walk, a real recording: its samples with that IMU's bias, temperature and "
+            "g-sensitivity errors on top.",
+            show_default=False,
+        ),
+    ] = None,
     imu: Annotated[
         str, typer.Option(help="An IMU's name (see `footfall list`) or your data sheet.")
     ] = "nimu",
@@ -289,22 +299,34 @@ def record(
         float, typer.Option(help="Temperature where it is walked, degC.", callback=finite)
     ] = 20.0,
 ) -> None:
-    """Record a walk with one individual IMU: the truth with that sensor's errors."""
+    """Record a walk with one individual IMU: the truth with that sensor's errors.
+
+    With --from-recording a real foot walks, and what the IMU adds to its recording is known.
+    """
+    from footfall.formats import read
     from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
     from footfall.recording import write_recording
+    from footfall.simulate.from_recording import add_errors
     from footfall.simulate.record import record as record_walk
     from footfall.simulate.walk import footfalls_path, read_walk
 
-    require_output(output, ".parquet", walk, footfalls_path(walk))
+    if walk is not None and from_recording is None:
+        require_output(output, ".parquet", walk, footfalls_path(walk))
+    elif from_recording is not None and walk is None:
+        require_output(output, ".parquet", from_recording)
+    else:
+        raise InputError("record: expected either a walk or --from-recording with a recording")
     unit = draw_unit(load_spec(imu), unit_seed)
+    air = TemperatureProfile.step(indoors, outdoors)
     with ERR.status("recording"):
-        recording = record_walk(
-            read_walk(walk),
-            unit,
-            seed=unit_seed,
-            temperature=TemperatureProfile.step(indoors, outdoors),
-            without=without or (),
-        )
+        if walk is not None:
+            recording = record_walk(
+                read_walk(walk), unit, seed=unit_seed, temperature=air, without=without or ()
+            )
+        else:
+            assert from_recording is not None
+            real, _ = read(from_recording)
+            recording = add_errors(real, unit, seed=unit_seed, temperature=air, without=without or ())
         write_recording(recording, output)
     say(f"{len(recording.t)} samples: {output}")
 

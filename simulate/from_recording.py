@@ -1,0 +1,84 @@
+"""A real recording as another IMU would have drifted on the same foot."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Collection
+from dataclasses import asdict
+
+import numpy as np
+
+from footfall.models.imu import (
+    EFFECTS,
+    ROOM,
+    Channel,
+    ImuUnit,
+    TemperatureProfile,
+    TriadUnit,
+    require_effects,
+    stages,
+)
+from footfall.recording import Recording
+from footfall.streams import stream
+
+# What makes a heading drift and can be laid on top. The rest a real recording has already: its sensor's scale
+# and alignment, bandwidth, noise, range and resolution, which a second time would be those of no sensor.
+ADDED = ("g_sensitivity", "g2", "temperature", "turn_on", "flicker", "rate_random_walk")
+
+
+def add_errors(
+    recording: Recording,
+    unit: ImuUnit,
+    *,
+    seed: int,
+    temperature: TemperatureProfile = ROOM,
+    without: Collection[str] = (),
+) -> Recording:
+    """`recording` with the biases, temperature errors and g-sensitivity of `unit` (`ADDED`) on top.
+
+    The unit's axes are those of the recording, and its force is what the recording says, noise included.
+    What the recording's own sensor drifts stays in: judge by a recording whose track is good as it is.
+
+    Parameters
+    ----------
+    seed : of the noises of this recording (turn-on bias, flicker, random walk)
+    temperature : of the air; the unit is as warm as `temperature.start` at the first sample
+    without : names of effects to leave out; the random draws of the others stay as they are
+
+    Raises
+    ------
+    InputError
+        An effect that does not exist, or a seed that is no integer of 0 or more.
+    """
+    require_effects(without)
+    left_out = {*without, *EFFECTS} - (set(ADDED) - set(without))
+    die = temperature.die(recording.t, unit.spec.thermal.time_constant)
+
+    def worse(name: str) -> np.ndarray:
+        triad: TriadUnit = getattr(unit, name)
+        channel = Channel(
+            unit=triad,
+            true=getattr(recording, name),
+            force=recording.accel,
+            warmth=die - unit.spec.thermal.reference,
+            interval=recording.interval,
+            stream=lambda noise: stream(seed, f"noise.{name}.{noise}"),
+        )
+        return deque(stages(channel, left_out), maxlen=1)[0][1].copy()
+
+    return Recording(
+        t=recording.t,
+        gyro=worse("gyro"),
+        accel=worse("accel"),
+        temperature=die if unit.spec.thermal.reported else recording.temperature,
+        meta={
+            **recording.meta,
+            "added": {
+                "imu": unit.spec.name,
+                "unit_seed": unit.seed,
+                "noise_seed": seed,
+                "temperature": asdict(temperature),
+                "effects": [name for name in ADDED if name not in without],
+            },
+        },
+    )
