@@ -84,12 +84,9 @@ class FilterSettings:
         for name in ("sigma_velocity", "sigma_rate"):
             if getattr(self, name) == 0:
                 raise InputError(f"filter: {name} = 0, expected more: nothing is known exactly")
-        if self.zaru and not self.estimate_gyro_bias:
-            raise InputError("filter: zaru measures the gyro bias, but estimate_gyro_bias is off")
-        if self.g_sensitivity and not self.estimate_gyro_bias:
-            raise InputError(
-                "filter: g_sensitivity is measured with the gyro bias, but estimate_gyro_bias is off"
-            )
+        for name in ("zaru", "g_sensitivity"):
+            if getattr(self, name) and not self.estimate_gyro_bias:
+                raise InputError(f"filter: {name} needs estimate_gyro_bias, which is off")
 
     @classmethod
     def paper(cls) -> FilterSettings:
