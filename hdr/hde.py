@@ -92,7 +92,7 @@ class HdeParams:
     directions : the dominant directions
     """
 
-    sigma: float = math.radians(20.0)
+    sigma: float = math.radians(8.0)
     directions: DirectionParams = field(default_factory=DirectionParams)
 
     def __post_init__(self) -> None:

@@ -95,8 +95,8 @@ class JimenezParams:
     """
 
     window: int = 5
-    gate: float = math.radians(6.0)
-    sigma: float = math.radians(4.0)
+    gate: float = math.radians(3.0)
+    sigma: float = math.radians(2.0)
     scale: float = math.radians(5.0)
     directions: DirectionParams = field(default_factory=DirectionParams)
 
