@@ -16,6 +16,7 @@ from scipy.signal import butter, sosfiltfilt
 from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
+from footfall.errors import InputError
 from footfall.pdr.stance import StanceParams, ThresholdDetector, find_stances
 from footfall.pdr.strapdown import integrate
 
@@ -122,8 +123,15 @@ def aligned(signals: Signals) -> Signals:
     Up is the mean specific force at mid-stance, when the sole is flat. The pitch axis is the horizontal
     direction of the largest rates (first principal component). It points left where push-off, which comes
     before the swing, is the positive peak. The static bias of the first second is taken off the gyro.
+
+    Raises
+    ------
+    InputError
+        There are too few stances for a walk.
     """
     rows = middles(signals)
+    if len(rows) < 4:
+        raise InputError(f"{len(rows)} stances found, expected a walk")
     gyro = signals.gyro - signals.gyro[: int(REST_S * RATE_HZ)].mean(axis=0)
     half = int(QUIET_S / 2 * RATE_HZ)
     up = np.mean([signals.accel[row - half : row + half + 1].mean(axis=0) for row in rows[1:-1]], axis=0)
@@ -190,6 +198,11 @@ def read_foot(signals: Signals, left: bool = False) -> Foot:
     Parameters
     ----------
     left : the foot is a left one, and is mirrored
+
+    Raises
+    ------
+    InputError
+        There are fewer than two steady strides.
     """
     signals = aligned(signals)
     if left:
@@ -204,6 +217,10 @@ def read_foot(signals: Signals, left: bool = False) -> Foot:
         for stride in found[1:-1]
         if abs(stride.turn) < STRAIGHT_RAD and _NORMAL[0] < stride.duration / usual < _NORMAL[1]
     ]
+    if len(steady) < 2:
+        raise InputError(
+            f"{len(rows)} stances but {len(steady)} steady, straight strides, expected 2 or more"
+        )
     return Foot(signals, tuple(steady))
 
 

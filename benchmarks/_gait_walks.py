@@ -11,14 +11,14 @@ from scipy.spatial.transform import Rotation
 from footfall.conventions import GRAVITY
 from footfall.models import body
 from footfall.models.body import MOUNTS, Mount
-from footfall.models.policy import stock_policy
+from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import SUBJECTS
 from footfall.scenarios.path import PathSpec, build_path
 from footfall.simulate.journey import PHYSICS_STEP, STAND_S, Plan, stroll
 from footfall.simulate.truth import imu_truth
 
 WANDER_M = 0.10  # as in the stock scenarios
-REST_S = 2.0  # of the stand that is kept
+REST_S = 2.0  # of standing before the first step
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,8 @@ class Motion:
     scale: float
 
 
-def walk_straight(case: Case, metres: float) -> Motion:
-    """Stand, then walk a straight path of some metres.
+def walk_straight(case: Case, metres: float, policy: Policy | None = None) -> Motion:
+    """Stand, then walk a straight path of some metres, with the stock weights or others.
 
     Raises
     ------
@@ -68,10 +68,11 @@ def walk_straight(case: Case, metres: float) -> Motion:
         mount=Mount(position=(0.0, 0.0, 0.0), euler_deg=(0.0, 0.0, 0.0)),
         pace=case.pace,
         wander=WANDER_M,
+        calibration=REST_S,
         seed=case.seed,
     )
     kept: list[tuple[np.ndarray, ...]] = []
-    for moment in stroll(plan, stock_policy()):
+    for moment in stroll(plan, policy or stock_policy()):
         sensor, model = moment.trace.sensor[0], moment.walkers.models[0]
         weight = float(model.body_mass.sum()) * GRAVITY
         touch = sensor[:, body.SENSOR_TOUCH].reshape(len(sensor), 2, -1).sum(axis=2)
@@ -88,7 +89,7 @@ def walk_straight(case: Case, metres: float) -> Motion:
             )
         )
     foot, feet, load, ankle = (
-        np.concatenate(parts)[round((STAND_S - REST_S) / PHYSICS_STEP) :] for parts in zip(*kept, strict=True)
+        np.concatenate(parts)[round(STAND_S / PHYSICS_STEP) :] for parts in zip(*kept, strict=True)
     )
     foot[:, :3] *= subject.scale
     return Motion(case, foot, feet * subject.scale, load, ankle, subject.scale)

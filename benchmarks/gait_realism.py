@@ -30,6 +30,7 @@ from _real import BESIDE, find
 from rich.console import Console
 
 from footfall.errors import InputError
+from footfall.models.policy import load_policy, stock_policy
 
 FEWEST = 3  # real recordings: fewer have no spread
 FASTEST = 1.7  # m/s, of the walks here
@@ -64,6 +65,7 @@ class Job:
     metres: float
     mounts: tuple[str, ...]
     bandwidth_hz: float
+    weights: Path | None
 
 
 @dataclass(frozen=True)
@@ -76,8 +78,9 @@ class Walked:
 
 def perform(job: Job) -> Walked | str:
     """Walk, and read the foot at every mount; or why the walk came to no end."""
+    policy = load_policy(job.weights) if job.weights else stock_policy()
     try:
-        motion = walk_straight(job.case, job.metres)
+        motion = walk_straight(job.case, job.metres, policy)
     except InputError as error:
         return str(error)
     feet = {
@@ -88,13 +91,13 @@ def perform(job: Job) -> Walked | str:
 
 
 def simulate(
-    metres: float, bandwidth_hz: float, processes: int
+    metres: float, bandwidth_hz: float, weights: Path | None, processes: int
 ) -> tuple[dict[str, Foot], dict[str, dict[str, float]]]:
     """Every simulated foot and the figures of every walk, by name; walks that came to no end are left out."""
     mounts: dict[Case, tuple[str, ...]] = dict.fromkeys(WALKS.values(), ())
     for case, mount in FEET.values():
         mounts[case] += (mount,)
-    jobs = [Job(case, metres, seen, bandwidth_hz) for case, seen in mounts.items()]
+    jobs = [Job(case, metres, seen, bandwidth_hz, weights) for case, seen in mounts.items()]
     walked: dict[Case, Walked] = {}
     for job, result in zip(jobs, run_all(perform, jobs, processes, "walking"), strict=True):
         if isinstance(result, str):
@@ -103,6 +106,24 @@ def simulate(
             walked[job.case] = result
     feet = {name: walked[case].feet[mount] for name, (case, mount) in FEET.items() if case in walked}
     return feet, {name: walked[case].figures for name, case in WALKS.items() if case in walked}
+
+
+def read_real(folder: Path, bandwidth_hz: float) -> dict[str, Foot]:
+    """The feet of a folder's recordings, by name.
+
+    Raises
+    ------
+    InputError
+        There are too few to have a spread, or one cannot be read.
+    """
+    found = find(folder)
+    if len(found) < FEWEST:
+        raise InputError(f"{folder}: {len(found)} recordings, expected {FEWEST} or more to judge by")
+    feet = {}
+    for one in found:
+        raw = one.recording
+        feet[one.name] = read_foot(matched(raw.t, raw.gyro, raw.accel, bandwidth_hz))
+    return feet
 
 
 def all_figures(
@@ -139,17 +160,20 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument(
         "--bandwidth", type=float, default=BANDWIDTH_HZ, metavar="HZ", help="low-pass of all (default 50)"
     )
+    parser.add_argument(
+        "--weights", type=Path, metavar="FILE", help="walk with these (default: shipped ones)"
+    )
     parser.add_argument("--docs", type=Path, metavar="FOLDER", help="write gait.md's tables and figure there")
     chosen = parser.parse_args(arguments)
 
-    recordings = find(chosen.data)
-    if len(recordings) < FEWEST:
-        sys.exit(f"{chosen.data}: {len(recordings)} recordings, expected {FEWEST} or more to judge by")
-    real = {}
-    for one in recordings:
-        raw = one.recording
-        real[one.name] = read_foot(matched(raw.t, raw.gyro, raw.accel, chosen.bandwidth))
-    simulated, walks = simulate(chosen.metres, chosen.bandwidth, chosen.processes)
+    try:
+        policy = load_policy(chosen.weights) if chosen.weights else stock_policy()
+        real = read_real(chosen.data, chosen.bandwidth)
+    except InputError as error:
+        sys.exit(str(error))
+    simulated, walks = simulate(chosen.metres, chosen.bandwidth, chosen.weights, chosen.processes)
+    if not simulated:
+        sys.exit("no walk came to its end")
     of_real, of_simulated = all_figures(real, simulated)
     for table in terminal(of_real, of_simulated, walks):
         out.print(table)
@@ -157,10 +181,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     # Recordings faster than any walk here make the spread wide: how it would be without them.
     slow = {name: foot for name, foot in real.items() if of_real[name]["speed_m_s"] <= FASTEST}
     without = tally(*all_figures(slow, simulated)) if len(slow) >= FEWEST else {}
-    for marks, count, which in ((found, len(real), ""), (without, len(slow), f" at {FASTEST:g} m/s or less")):
-        good = sum(mark == "inside" for mark in marks.values())
-        out.print(f"{good} of {len(marks)} rows inside the spread of the {count} real recordings{which}")
+    counts = [
+        f"{sum(mark == 'inside' for mark in marks.values())} of {len(marks)} rows inside the spread of the "
+        f"{len(feet)} real recordings{which}."
+        for marks, feet, which in ((found, real, ""), (without, slow, f" at {FASTEST:g} m/s or less"))
+        if marks
+    ]
+    for count in counts:
+        out.print(count)
     document = {
+        "walker": {"policy": policy.digest, **policy.meta},
         "bandwidth_hz": chosen.bandwidth,
         "metres": chosen.metres,
         "real": of_real,
@@ -172,11 +202,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     }
     write_json(chosen.json, _plain(document))
     if chosen.docs is not None:
-        insert(chosen.docs / "gait.md", markdown(of_real, of_simulated, walks))
+        tables = markdown(of_real, of_simulated, walks)
+        insert(chosen.docs / "gait.md", f"Walker {policy.digest}. {' '.join(counts)}\n\n{tables}")
+        name = DRAWN if DRAWN in simulated else next(iter(simulated))
         title = f"One stride of a foot's IMU in the foot's axes, {chosen.bandwidth:g} Hz: simulated over real"
         strides = [normalised(foot) for foot in real.values()]
         (chosen.docs / "images").mkdir(exist_ok=True)
-        draw(chosen.docs / "images" / "gait_strides.png", strides, normalised(simulated[DRAWN]), title)
+        draw(chosen.docs / "images" / "gait_strides.png", strides, normalised(simulated[name]), title)
 
 
 if __name__ == "__main__":
