@@ -162,14 +162,17 @@ def _joseph(p, h, first, last, variance, gain):  # type: ignore[no-untyped-def]
         for i in range(n):
             row[i] += h[k] * p[k, i]
     for i in range(n):
-        for k in range(n):
-            p[i, k] -= gain[i] * row[k]
+        # Row i of (I - gain h) p, then its share of the columns.
         left = -variance * gain[i]
         for k in range(first, last):
-            left += p[i, k] * h[k]
+            left += (p[i, k] - gain[i] * row[k]) * h[k]
         for k in range(n):
-            p[i, k] -= left * gain[k]
-    for i in range(n):
+            p[i, k] -= gain[i] * row[k] + left * gain[k]
+
+
+@njit(cache=True, nogil=True)
+def _symmetrise(p):  # type: ignore[no-untyped-def]
+    for i in range(p.shape[0]):
         for k in range(i):
             mean = 0.5 * (p[i, k] + p[k, i])
             p[i, k], p[k, i] = mean, mean
@@ -268,6 +271,7 @@ def rest(x, p, gyro, accel, velocity_variance, rate_variance, turns):  # type: i
             _take_in(dx, h, 12 + i, last, w[i], gain)
             _joseph(p, h, 12 + i, last, rate_variance, gain)
             h[:] = 0.0
+    _symmetrise(p)
     inject(x, dx)
     return dx
 
@@ -289,6 +293,7 @@ def heading(x, p, innovation, variance):  # type: ignore[no-untyped-def]
     _gain(p, h, 6, 9, variance, gain)
     _take_in(dx, h, 6, 9, innovation, gain)
     _joseph(p, h, 6, 9, variance, gain)
+    _symmetrise(p)
     inject(x, dx)
     return dx
 
