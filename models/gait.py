@@ -8,7 +8,10 @@ from 10 to 40 % of the stride.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
+from numba.extending import register_jitable
 from scipy.interpolate import CubicSpline
 
 from footfall.models.body import N_SERVOS, SERVOS
@@ -50,7 +53,7 @@ def mask(*joints: str) -> np.ndarray:
     return out
 
 
-def _curve(anchors: dict[int, float]) -> np.ndarray:
+def _curve(anchors: Mapping[int, float]) -> np.ndarray:
     """Periodic spline through the anchors, cut to its first harmonics (rad)."""
     percent = np.array([*anchors, 100]) / 100
     degrees = np.array([*anchors.values(), anchors[0]], dtype=float)
@@ -82,8 +85,8 @@ def _table() -> np.ndarray:
 
 
 TABLE = _table()  # (N_PHASE, N_SERVOS) rad, at 1.25 m/s
-_HIP_MASK = mask("hip_flexion", "shoulder", "lumbar_yaw")  # swing with the stride's length
-_KNEE_ANKLE_MASK = mask("knee", "ankle")
+SWINGS = mask("hip_flexion", "shoulder", "lumbar_yaw")  # swing with the stride's length
+BENDS = mask("knee", "ankle")
 
 
 def _pose(**angles: float) -> np.ndarray:
@@ -100,14 +103,22 @@ STAGGER = _pose(hip_flexion_r=1, ankle_r=-1, hip_flexion_l=-1, ankle_l=1)
 SPREAD = mask("hip_adduction") - mask("subtalar")
 
 
+@register_jitable
 def stride_frequency(speed: np.ndarray) -> np.ndarray:
     """Strides a second at `speed` (m/s) of the 1.75 m body; below 0.7 m/s the steps get short instead."""
     return 0.92 * (np.maximum(speed, 0.7) / 1.25) ** 0.45
 
 
+@register_jitable
 def hip_amplitude(speed: np.ndarray) -> np.ndarray:
     """Hip excursion relative to that at 1.25 m/s."""
     return (np.maximum(speed, 0.03) / 1.25) ** 0.55
+
+
+@register_jitable
+def knee_amplitude(speed: np.ndarray) -> np.ndarray:
+    """Excursion of knee and ankle relative to that at speed: no high knees when stepping on the spot."""
+    return np.minimum(np.maximum(0.4 + 0.6 * speed / 0.9, 0.4), 1.0)
 
 
 def reference_angles(phase: np.ndarray, speed: np.ndarray, amplitude: np.ndarray | float = 1.0) -> np.ndarray:
@@ -125,5 +136,5 @@ def reference_angles(phase: np.ndarray, speed: np.ndarray, amplitude: np.ndarray
     """
     angles = TABLE[(phase * N_PHASE).astype(np.intp) % N_PHASE]
     hip = hip_amplitude(speed) * amplitude
-    low = np.clip(0.4 + 0.6 * speed / 0.9, 0.4, 1.0)  # no high knees when stepping on the spot
-    return angles * (1 + _HIP_MASK * (hip[..., None] - 1) + _KNEE_ANKLE_MASK * (low[..., None] - 1))
+    knee = knee_amplitude(speed)
+    return angles * (1 + SWINGS * (hip[..., None] - 1) + BENDS * (knee[..., None] - 1))

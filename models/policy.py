@@ -1,4 +1,4 @@
-"""The walker's learned policy: a small perceptron in plain numpy, shipped as npz."""
+"""The walker's learned policy: a small perceptron, shipped as npz."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from footfall.errors import InputError
+from footfall.models._policy_kernels import layer
 
 
 @dataclass(frozen=True)
@@ -35,12 +36,20 @@ class Policy:
     meta: Mapping[str, Any] = field(default_factory=dict)
 
     def __call__(self, observation: np.ndarray) -> np.ndarray:
-        """(n, n_observation) -> (n, n_action) mean action."""
-        x = observation
-        for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
-            x = x @ weight + bias
-            x = np.where(x > 0, x, np.expm1(np.minimum(x, 0)))  # ELU
-        return x @ self.weights[-1] + self.biases[-1]
+        """(n, n_observation) -> (n, n_action) mean action.
+
+        Raises
+        ------
+        ValueError
+            Observations of another length.
+        """
+        x = np.ascontiguousarray(observation, dtype=float)
+        if x.shape[1:] != self.weights[0].shape[:1]:
+            raise ValueError(f"observations {x.shape}, expected (n, {len(self.weights[0])})")
+        last = len(self.weights) - 1
+        for i, (weight, bias) in enumerate(zip(self.weights, self.biases, strict=True)):
+            x = layer(x, weight, bias, i < last)
+        return x
 
 
 def load_policy(path: str | Path) -> Policy:
@@ -56,8 +65,10 @@ def load_policy(path: str | Path) -> Policy:
         content = source.read_bytes()
         with np.load(source) as data:
             layers = sum(name.startswith("weight_") for name in data.files)
-            weights = tuple(data[f"weight_{i}"].astype(np.float64) for i in range(layers))
-            biases = tuple(data[f"bias_{i}"].astype(np.float64) for i in range(layers))
+            weights, biases = (
+                tuple(np.ascontiguousarray(data[f"{name}_{i}"], dtype=float) for i in range(layers))
+                for name in ("weight", "bias")
+            )
             gains = data["feedback_gains"]
             meta = json.loads(str(data["meta"]))
     except (OSError, KeyError, ValueError) as error:

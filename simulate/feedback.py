@@ -1,18 +1,16 @@
-"""Balance feedback under the learned residual: foot placement and posture (SIMBICON and Raibert terms).
+"""Gains of the balance feedback under the learned residual, and the mirror image of servos and joints.
 
-Everything is written for right stance; left stance is its mirror image. The gains are tuned by CMA-ES before
-the policy is trained on top of them.
+The feedback itself is `_balance_kernels.feedback`. The gains are tuned by CMA-ES before the policy is trained
+on top of them.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from footfall.models.body import JOINTS, N_SERVOS, SERVOS
-from footfall.models.gait import INDEX
+from footfall.models.body import JOINTS, SERVOS
 
 
 def _mirror(names: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
@@ -26,11 +24,6 @@ def _mirror(names: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
 
 SERVO_MIRROR, SERVO_SIGN = _mirror(tuple(SERVOS))
 JOINT_MIRROR, JOINT_SIGN = _mirror(JOINTS)
-
-
-def mirror_where(left_stance: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Mirror the rows (n, 17) of servo values of walkers in left stance."""
-    return np.where(left_stance[:, None], values[:, SERVO_MIRROR] * SERVO_SIGN, values)
 
 
 class Gains(NamedTuple):
@@ -79,99 +72,10 @@ GAIN_SCALE = Gains(
     0.4, 0.05, 0.08, 0.5, 0.08, 0.08, 0.5, 0.08, 0.05, 0.4, 0.08, 0.08, 0.15, 0.2, 0.2, 0.15, 0.3, 0.3, 0.05,
     0.5, 0.2, 0.2, 0.1, 0.5, 0.2, 0.3, 0.05, 0.3, 0.15, 0.2, 0.15, 0.06,
 )  # fmt: skip
-_BRAKE = 0.2  # rad per m/s
-FOOT_OFFSET = 0.075  # m from the stance foot to the pelvis, sideways, at which no correction is made
+
+_RECORD = np.dtype([(name, float) for name in Gains._fields])
 
 
-@dataclass(frozen=True)
-class Balance:
-    """What the feedback looks at, all (n,), in the heading frame and mirrored to right stance.
-
-    pitch (nose down positive) and roll are relative to gravity, yaw_error to the commanded heading;
-    `foot_y` is the pelvis relative to the stance foot (m); `step_phase` runs 0..1 over a step; `speed` is the
-    commanded one.
-    """
-
-    pitch: np.ndarray
-    roll: np.ndarray
-    roll_rate: np.ndarray
-    pitch_rate: np.ndarray
-    yaw_rate: np.ndarray
-    yaw_error: np.ndarray
-    turn_rate: np.ndarray
-    speed_error: np.ndarray
-    mean_speed_error: np.ndarray
-    lateral_velocity: np.ndarray
-    mean_lateral_velocity: np.ndarray
-    foot_y: np.ndarray
-    step_phase: np.ndarray
-    speed: np.ndarray
-
-
-_LUMBAR_ROLL, _LUMBAR_PITCH = INDEX["lumbar_roll"], INDEX["lumbar_pitch"]
-_STANCE = {
-    joint: INDEX[f"{joint}_r"] for joint in ("hip_flexion", "hip_adduction", "hip_rotation", "knee", "ankle")
-}
-_SWING = {joint: INDEX[f"{joint}_l"] for joint in _STANCE}
-_STANCE_SUBTALAR = INDEX["subtalar_r"]
-
-
-def feedback(gains: np.ndarray, b: Balance) -> np.ndarray:
-    """Offsets of the servo targets for right stance.
-
-    Parameters
-    ----------
-    gains : (n, 32) or (32,)
-    b : of n walkers
-
-    Returns
-    -------
-    (n, 17) rad
-    """
-    g = Gains(*np.moveaxis(np.asarray(gains), -1, 0))
-    swing = np.clip((b.step_phase - 0.2) / 0.15, 0, 1)  # after toe-off of the other foot
-    late = np.clip((b.step_phase - 0.5) / 0.2, 0, 1)
-    # Walking slowly, what drives the body on (push-off, lean, long steps) fades and the swing leg brakes.
-    slow = np.clip(1 - b.speed / 0.8, 0, 1)
-    going = 1 - slow
-    out = np.zeros((len(b.pitch), N_SERVOS))
-    out[:, _LUMBAR_ROLL] = -g.torso_roll * b.roll - g.torso_roll_rate * b.roll_rate
-    out[:, _LUMBAR_PITCH] = (
-        -g.torso_pitch * b.pitch - g.torso_pitch_rate * b.pitch_rate + g.torso_pitch_offset * going
-    )
-    out[:, _STANCE["hip_flexion"]] = (
-        -g.stance_hip_pitch * b.pitch - g.stance_hip_pitch_rate * b.pitch_rate + g.stance_hip_offset * going
-    )
-    out[:, _STANCE["hip_adduction"]] = (
-        g.stance_hip_roll * b.roll + g.stance_hip_roll_rate * b.roll_rate + g.stance_adduction_offset
-    )
-    out[:, _STANCE["hip_rotation"]] = g.stance_yaw * b.yaw_error + g.stance_yaw_rate * (
-        b.yaw_rate - b.turn_rate
-    )
-    out[:, _STANCE["knee"]] = g.stance_knee_offset
-    out[:, _STANCE["ankle"]] = (
-        -late * g.push_off * going
-        + late * g.push_off_speed * b.speed_error
-        + g.ankle_speed * (1 - late) * b.speed_error
-    )
-    out[:, _STANCE_SUBTALAR] = g.subtalar_velocity * b.lateral_velocity + g.subtalar_position * (
-        b.foot_y - FOOT_OFFSET
-    )
-    out[:, _SWING["hip_flexion"]] = swing * (
-        g.place_pitch * b.pitch
-        + g.place_speed * b.speed_error
-        + g.place_mean_speed * b.mean_speed_error
-        + g.place_offset * going
-        + _BRAKE * slow * np.clip(b.speed_error, -0.2, 0.9)
-    )
-    out[:, _SWING["hip_adduction"]] = swing * (
-        g.width_roll * b.roll
-        - g.width_velocity * b.lateral_velocity
-        - g.width_position * (b.foot_y - FOOT_OFFSET)
-        + g.width_offset
-        + g.width_mean_velocity * b.mean_lateral_velocity
-    )
-    out[:, _SWING["hip_rotation"]] = g.swing_yaw * b.yaw_error - g.swing_turn * b.turn_rate
-    out[:, _SWING["knee"]] = g.swing_knee * np.sin(np.pi * b.step_phase)
-    out[:, _SWING["ankle"]] = g.swing_toe_lift * swing
-    return out
+def gain_records(gains: np.ndarray) -> np.ndarray:
+    """(n, 32) or (32,) -> (n,) or (1,) records whose fields are those of `Gains`."""
+    return np.ascontiguousarray(np.atleast_2d(gains), dtype=float).view(_RECORD)[:, 0]

@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from footfall.models import body
+from footfall.simulate._look_kernels import LIMIT as LIMIT
+from footfall.simulate._look_kernels import observe_all
 from footfall.simulate.feedback import JOINT_MIRROR, JOINT_SIGN, SERVO_MIRROR, SERVO_SIGN
-
-if TYPE_CHECKING:
-    from footfall.simulate.walkers import Walkers
-
-LIMIT = 6.0
-_TOUCH_SCALE = 400.0  # N
 
 
 def _mirror() -> tuple[np.ndarray, np.ndarray]:
@@ -45,35 +39,11 @@ def _mirror() -> tuple[np.ndarray, np.ndarray]:
     return np.array(permutation), np.array(signs, dtype=float)
 
 
-_MIRROR, _SIGN = _mirror()
-N_OBSERVATION = len(_MIRROR)
+MIRROR, SIGN = _mirror()
+N_OBSERVATION = len(MIRROR)
 
 
-def observe(w: Walkers) -> np.ndarray:
-    """(n, N_OBSERVATION) float32 in [-6, 6]."""
-    q, v = w.qpos, w.qvel
-    ahead = w.cos * v[:, 0] + w.sin * v[:, 1] - w.speed
-    aside = -w.sin * v[:, 0] + w.cos * v[:, 1]
-    step_angle = 2 * np.pi * ((w.phase * 2) % 1)
-    columns = np.concatenate(
-        [
-            (w.height[:, None] - 0.98) * 5,
-            w.up_body * 2,
-            np.stack([ahead, aside, v[:, 2]], 1) * 1.5,
-            v[:, 3:6] * 0.4,
-            q[:, 7:] * 1.5,
-            v[:, 6:] * 0.12,
-            np.minimum(w.sensor[:, body.SENSOR_TOUCH] / _TOUCH_SCALE, 2.0),
-            np.stack([np.sin(step_angle), np.cos(step_angle)], 1),
-            np.stack([(w.speed - 1.2) * 3, w.speed_goal - w.speed], 1),
-            np.stack([np.clip(w.yaw_error, -0.8, 0.8) * 2.5, w.turn * 2], 1),
-            np.stack([w.mean_velocity[:, 0] - w.speed, w.mean_velocity[:, 1]], 1) * 3,
-            w.residual * 2.4,
-            np.stack([w.grade_forward, w.grade_left], 1) * 10,
-            w.variability.value * [15, 10, 30, 8, 8],
-            np.stack([(1 - w.gate.value) * 2, w.gate.closing], 1),
-        ],
-        axis=1,
-    )
-    columns = np.where(w.left_stance[:, None], columns[:, _MIRROR] * _SIGN, columns)
-    return np.clip(columns, -LIMIT, LIMIT).astype(np.float32)
+def observe(state: np.ndarray) -> np.ndarray:
+    """(n, N_OBSERVATION) float32 in [-LIMIT, LIMIT] of (n,) records of state.WALKER."""
+    seen: np.ndarray = observe_all(state, MIRROR, SIGN)
+    return seen

@@ -15,12 +15,12 @@ from footfall.models.body import (
 )
 from footfall.models.policy import load_policy, stock_policy
 from footfall.models.subject import Build, Habits
-from footfall.simulate.feedback import GAIN_START, Balance, Gains, feedback, mirror_where
-from footfall.simulate.observation import N_OBSERVATION
+from footfall.simulate._balance_kernels import Balance, feedback
+from footfall.simulate.feedback import GAIN_START, SERVO_MIRROR, SERVO_SIGN, Gains, gain_records
+from footfall.simulate.observation import MIRROR, N_OBSERVATION, SIGN
+from footfall.simulate.state import WALKER, Columns
 from footfall.simulate.variability import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD, Variability
 from footfall.simulate.walkers import N_ACTION, Walkers
-
-BALANCE_FIELDS = tuple(Balance.__dataclass_fields__)
 
 
 def walkers(n: int = 1, timestep: float = 0.001, variability: float = 0.0) -> Walkers:
@@ -130,21 +130,25 @@ def test_a_walker_does_not_depend_on_its_neighbours() -> None:
     np.testing.assert_allclose(one.qpos[0], three.qpos[1], atol=1e-9)
 
 
-@settings(max_examples=50)
-@given(st.lists(st.floats(-1, 1), min_size=N_SERVOS, max_size=N_SERVOS), st.booleans())
-def test_mirroring_twice_is_nothing(values: list[float], left: bool) -> None:
-    row = np.array([values])
-    twice = mirror_where(np.array([left]), mirror_where(np.array([left]), row))
-    np.testing.assert_array_equal(twice, row)
+@pytest.mark.parametrize(("order", "sign"), [(MIRROR, SIGN), (SERVO_MIRROR, SERVO_SIGN)])
+def test_mirroring_twice_is_nothing(order: np.ndarray, sign: np.ndarray) -> None:
+    values = np.arange(1.0, len(order) + 1)
+    np.testing.assert_array_equal(((values[order] * sign)[order] * sign), values)
 
 
 @settings(max_examples=50)
-@given(st.lists(st.floats(-1, 1), min_size=len(BALANCE_FIELDS), max_size=len(BALANCE_FIELDS)))
+@given(st.lists(st.floats(-1, 1), min_size=len(Balance._fields), max_size=len(Balance._fields)))
 def test_feedback_is_affine_in_its_gains(values: list[float]) -> None:
     balance = Balance(*(np.array([value]) for value in values))
+
+    def offsets(gains: np.ndarray) -> np.ndarray:
+        out = np.empty((N_SERVOS, 1))
+        feedback(Columns(gain_records(gains)), balance, out)
+        return out
+
     first, second = np.array(GAIN_START), np.linspace(-1, 1, len(Gains._fields))
-    together = feedback(first + second, balance) + feedback(0 * first, balance)
-    np.testing.assert_allclose(together, feedback(first, balance) + feedback(second, balance), atol=1e-12)
+    together = offsets(first + second) + offsets(0 * first)
+    np.testing.assert_allclose(together, offsets(first) + offsets(second), atol=1e-12)
 
 
 def test_variability_has_the_stated_spread() -> None:
@@ -152,24 +156,24 @@ def test_variability_has_the_stated_spread() -> None:
     n = 4000
     everyone, rng = np.ones(n, dtype=bool), np.random.default_rng(1)
     habits = Habits(cadence=1.03, step_width=0.01, toe_out=0.1, asymmetry=0.0)
-    lively, still = Variability(n), Variability(n)
+    lively, still = Variability(np.zeros(n, WALKER)), Variability(np.zeros(n, WALKER))
     lively.place(everyone, np.ones(n), [habits] * n)
     still.place(everyone, np.zeros(n), [habits] * n)
     for half in np.arange(40) % 2:
         for group in (lively, still):
-            group.advance(everyone, np.full(n, half), np.full(n, 0.03), rng)
+            group.draw(np.arange(n), np.full(n, half), rng)
     assert lively.target[:, 0].std() == pytest.approx(np.hypot(CADENCE_SD, CADENCE_SLOW_SD), rel=0.05)
     assert lively.target[:, 0].mean() == pytest.approx(0.03, abs=0.003)
     assert lively.target[:, 3].std() == pytest.approx(TOE_OUT_SD, rel=0.05)
-    np.testing.assert_allclose(still.value, np.tile([0.03, 0, 0.01, 0.1, 0.1], (n, 1)), atol=1e-12)
+    np.testing.assert_allclose(still.target, np.tile([0.03, 0, 0.01, 0.1, 0.1], (n, 1)), atol=1e-12)
 
 
 def test_asymmetry_makes_one_step_quicker_than_the_other() -> None:
-    one = Variability(1)
+    one = Variability(np.zeros(1, WALKER))
     one.place(np.ones(1, dtype=bool), np.zeros(1), [Habits(asymmetry=0.02)])
     rng, cadence = np.random.default_rng(0), []
     for half in (0, 1):
-        one.advance(np.ones(1, dtype=bool), np.array([half]), np.array([0.03]), rng)
+        one.draw(np.arange(1), np.array([half]), rng)
         cadence.append(one.target[0, 0])
     assert cadence == pytest.approx([0.02, -0.02])
 
@@ -226,6 +230,13 @@ def test_the_shipped_policy_fits_the_walker() -> None:
     assert policy(np.zeros((3, N_OBSERVATION))).shape == (3, N_ACTION)
     assert policy.feedback_gains.shape == (32,)
     assert {"seed", "samples"} <= set(policy.meta)
+
+
+def test_observations_and_actions_of_another_layout_are_refused() -> None:
+    with pytest.raises(ValueError, match=r"observations \(1, 7\), expected"):
+        stock_policy()(np.zeros((1, 7)))
+    with pytest.raises(ValueError, match=r"actions \(2, 3\), expected \(2, 17\)"):
+        walkers(2).step(np.zeros((2, 3)))
 
 
 def test_a_file_that_is_no_policy_is_refused(tmp_path) -> None:  # type: ignore[no-untyped-def]

@@ -1,0 +1,155 @@
+"""Compiled: how the phase runs, how variability slews, and the servo targets of a control step.
+
+Laws in terms of one walker `s` (see state.py); the face is walkers.py. What the gait is made of comes as an
+argument (`Reference`), not as constants, so that compiled code in numba's cache never holds an earlier one.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numba.extending import register_jitable
+
+from footfall.models import gait
+from footfall.simulate._elementwise import choose
+from footfall.simulate.state import ACTION_SCALE
+from footfall.simulate.variability import AMPLITUDE, CADENCE, TOE_OUT_LEFT, TOE_OUT_RIGHT, WIDTH
+
+_LEG_LENGTH = 0.9  # m, turns a step width into an adduction
+_WIDER = 0.03  # m by which each leg is set wider while stopping
+_SLEW_S = 0.12
+_FROZEN = 0.06  # of the stride after a heel strike, where the phase of a stand rests
+
+
+class Reference(NamedTuple):
+    """The reference gait: table (phases, 17) rad, and per servo what scales, shifts and leans it (17,)."""
+
+    table: np.ndarray
+    swings: np.ndarray
+    bends: np.ndarray
+    adduction: np.ndarray
+    toe_out_right: np.ndarray
+    toe_out_left: np.ndarray
+    standing: np.ndarray
+    stagger: np.ndarray
+    spread: np.ndarray
+    ankles: np.ndarray
+    subtalar: np.ndarray
+    scale: np.ndarray
+
+
+REFERENCE = Reference(
+    table=gait.TABLE,
+    swings=gait.SWINGS,
+    bends=gait.BENDS,
+    adduction=gait.mask("hip_adduction"),
+    toe_out_right=gait.mask("hip_rotation_r"),
+    toe_out_left=gait.mask("hip_rotation_l"),
+    standing=gait.STANDING,
+    stagger=gait.STAGGER,
+    spread=gait.SPREAD,
+    ankles=gait.mask("ankle"),
+    subtalar=gait.mask("subtalar_r") - gait.mask("subtalar_l"),
+    scale=ACTION_SCALE,
+)
+
+
+@register_jitable
+def stride(s):  # type: ignore[no-untyped-def]
+    """How far the phase runs in this control step; it freezes in standing."""
+    opening = choose(s.gate > 0, np.maximum(s.gate, 0.5), 0.0)
+    pace = choose(s.closing, s.gate * s.gate, opening)
+    s.advance = gait.stride_frequency(s.speed) * (1 + s.varied[CADENCE]) * pace * s.dt
+    resting = np.floor(s.phase * 2) / 2 + _FROZEN
+    s.next_phase = choose(s.closing & (s.gate <= 0), resting, s.phase + s.advance)
+
+
+@register_jitable
+def slew(s):  # type: ignore[no-untyped-def]
+    """Variability goes to its goals; who is about to stop widens its steps."""
+    braking = (s.speed_goal < 0.2) & (s.speed < 0.6) & np.logical_not(s.closing)
+    widen = choose(braking, _WIDER, 0.0)
+    for i in range(5):
+        goal = s.varied_goal[i] + (widen if i == WIDTH else 0.0)
+        s.varied[i] += (goal - s.varied[i]) * (s.dt / _SLEW_S)
+
+
+@register_jitable
+def amplitudes(s):  # type: ignore[no-untyped-def]
+    """Excursions of the hips and of the knees, relative to those at 1.25 m/s."""
+    return gait.hip_amplitude(s.speed) * (1 + s.varied[AMPLITUDE]), gait.knee_amplitude(s.speed)
+
+
+@register_jitable
+def servo(s, ref, j, hip, knee, stagger):  # type: ignore[no-untyped-def]
+    """Of servo j: factor on the table, offset in walking, angle in standing, and slope (rad)."""
+    factor = 1 + ref.swings[j] * (hip - 1) + ref.bends[j] * (knee - 1)
+    # The legs' rotation axes are mirrored: outwards is negative.
+    toe_out = ref.toe_out_right[j] * s.varied[TOE_OUT_RIGHT] + ref.toe_out_left[j] * s.varied[TOE_OUT_LEFT]
+    offset = -ref.adduction[j] * (s.varied[WIDTH] / _LEG_LENGTH) - toe_out
+    standing = ref.standing[j] + stagger * s.stagger * ref.stagger[j] + s.spread * ref.spread[j] - toe_out
+    return factor, offset, standing, s.grade_forward * ref.ankles[j] + s.grade_left * ref.subtalar[j]
+
+
+@register_jitable
+def angle(ref, j, phase, gate, factor, offset, standing, slope):  # type: ignore[no-untyped-def]
+    """Reference angle of servo j."""
+    count = len(ref.table)
+    row = np.intp((phase % 1) * count) % count
+    return gate * (ref.table[row, j] * factor + offset) + (1 - gate) * standing + slope
+
+
+@register_jitable
+def targets(s, ref, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (k, 17) rad with the servo targets of the k physics steps."""
+    count = len(out)
+    resting = s.closing & (s.gate <= 0)
+    hip, knee = amplitudes(s)
+    for j in range(len(ref.scale)):
+        factor, offset, standing, slope = servo(s, ref, j, hip, knee, 1.0)
+        for i in range(count):
+            part = (i + 1) / count
+            phase = choose(resting, s.next_phase, s.phase + s.advance * part)
+            gate = s.gate_before + (s.gate - s.gate_before) * part
+            residual = (1 - part) * s.residual[j] + part * s.next_residual[j]
+            out[i, j] = angle(ref, j, phase, gate, factor, offset, standing, slope) + ref.scale[j] * residual
+
+
+@register_jitable
+def reference(s, ref, stagger, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (17,) rad with the reference angles of this moment."""
+    hip, knee = amplitudes(s)
+    for j in range(len(ref.scale)):
+        factor, offset, standing, slope = servo(s, ref, j, hip, knee, stagger)
+        out[j] = angle(ref, j, s.phase, s.gate, factor, offset, standing, slope)
+
+
+@njit(cache=True, nogil=True)
+def stride_all(state):  # type: ignore[no-untyped-def]
+    """`stride` of every walker; (n,) bool: who begins a step."""
+    new = np.empty(len(state), np.bool_)
+    for i in range(len(state)):
+        stride(state[i])
+        new[i] = np.floor(state[i].next_phase * 2) != np.floor(state[i].phase * 2)
+    return new
+
+
+@njit(cache=True, nogil=True)
+def targets_all(state, ref, substeps):  # type: ignore[no-untyped-def]
+    """`slew`, then `targets` (n, substeps, 17) of every walker."""
+    out = np.empty((len(state), substeps, len(ref.scale)))
+    for i in range(len(state)):
+        slew(state[i])
+        targets(state[i], ref, out[i])
+    return out
+
+
+@njit(cache=True, nogil=True)
+def reference_all(state, ref, stagger):  # type: ignore[no-untyped-def]
+    """`reference` (n, 17) of every walker."""
+    out = np.empty((len(state), len(ref.scale)))
+    for i in range(len(state)):
+        reference(state[i], ref, stagger, out[i])
+    return out

@@ -1,0 +1,130 @@
+"""Compiled: what the body looks like after the physics, how commands slew, and what the policy sees.
+
+Laws in terms of one walker `s` (see state.py); the faces are walkers.py and observation.py.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numba.extending import register_jitable
+
+from footfall.models import body
+from footfall.simulate._elementwise import choose, clip, turned
+
+SPEED_SLEW = 0.8  # m/s2, of the commanded speed
+TURN_SLEW = 2.0  # rad/s2
+LIMIT = 6.0  # of an observation
+_MEAN_VELOCITY_S = 0.5
+_TOUCH_SCALE = 400.0  # N
+_N_JOINTS, _N_SERVOS = body.N_JOINTS, body.N_SERVOS
+_TOUCH, _N_TOUCH = body.SENSOR_TOUCH.start, 6
+
+
+@register_jitable
+def look(s):  # type: ignore[no-untyped-def]
+    """Derive what observation, feedback and reward share."""
+    w, x, y, z = s.qpos[3], s.qpos[4], s.qpos[5], s.qpos[6]
+    norm = np.maximum(np.sqrt(w * w + x * x + y * y + z * z), 1e-9)
+    w, x, y, z = w / norm, x / norm, y / norm, z / norm
+    r = s.rotation
+    r[0, 0], r[0, 1], r[0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
+    r[1, 0], r[1, 1], r[1, 2] = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
+    r[2, 0], r[2, 1], r[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+    s.yaw = np.arctan2(r[1, 0], r[0, 0])
+    s.cos, s.sin = np.cos(s.yaw), np.sin(s.yaw)
+    for i in range(3):
+        s.up_body[i] = r[0, i] * s.up[0] + r[1, i] * s.up[1] + r[2, i] * s.up[2]
+    s.pitch = -np.arcsin(clip(s.up_body[0], -1.0, 1.0))
+    s.roll = np.arctan2(s.up_body[1], s.up_body[2])
+    s.yaw_error = (s.yaw - s.heading + np.pi) % (2 * np.pi) - np.pi
+    s.height = s.qpos[2] - s.ground
+    s.grade_forward, s.grade_left = turned(s, s.gradient[0], s.gradient[1])
+    s.left_stance = np.floor(s.phase * 2) % 2 == 1
+
+
+@register_jitable
+def along_heading(s):  # type: ignore[no-untyped-def]
+    """Pelvis velocity along and across the commanded heading (m/s)."""
+    cos, sin = np.cos(s.heading), np.sin(s.heading)
+    return cos * s.qvel[0] + sin * s.qvel[1], -sin * s.qvel[0] + cos * s.qvel[1]
+
+
+@register_jitable
+def settle(s):  # type: ignore[no-untyped-def]
+    """End a control step: phase, residual and commands move on."""
+    s.phase = s.next_phase % 1
+    for j in range(_N_SERVOS):
+        s.residual[j] = s.next_residual[j]
+    s.fresh = False
+    s.heading += s.turn * s.dt
+    slew = SPEED_SLEW * s.dt
+    s.speed += clip(s.speed_goal - s.speed, -0.9 * slew, choose(s.gate > 0.3, slew, 0.0))
+    turn = s.turn + clip(s.turn_goal - s.turn, -TURN_SLEW * s.dt, TURN_SLEW * s.dt)
+    s.turn = choose(s.gate < 0.5, 0.0, turn)
+    along, across = along_heading(s)
+    s.mean_velocity[0] += (along - s.mean_velocity[0]) * (s.dt / _MEAN_VELOCITY_S)
+    s.mean_velocity[1] += (across - s.mean_velocity[1]) * (s.dt / _MEAN_VELOCITY_S)
+
+
+@register_jitable
+def observe(s, mirror, sign, own, seen):  # type: ignore[no-untyped-def]
+    """Fill `own` (N_OBSERVATION,) as it is, and `seen` with it mirrored to right stance.
+
+    The order is that of `observation._mirror`.
+    """
+    along, aside = turned(s, s.qvel[0], s.qvel[1])
+    step_angle = 2 * np.pi * ((s.phase * 2) % 1)
+    own[0] = (s.height - 0.98) * 5
+    for i in range(3):
+        own[1 + i] = s.up_body[i] * 2
+        own[7 + i] = s.qvel[3 + i] * 0.4
+    own[4], own[5], own[6] = (along - s.speed) * 1.5, aside * 1.5, s.qvel[2] * 1.5
+    at = 10
+    for i in range(_N_JOINTS):
+        own[at + i] = s.qpos[7 + i] * 1.5
+        own[at + _N_JOINTS + i] = s.qvel[6 + i] * 0.12
+    at += 2 * _N_JOINTS
+    for i in range(_N_TOUCH):
+        own[at + i] = np.minimum(s.sensor[_TOUCH + i] / _TOUCH_SCALE, 2.0)
+    at += _N_TOUCH
+    own[at], own[at + 1] = np.sin(step_angle), np.cos(step_angle)
+    own[at + 2], own[at + 3] = (s.speed - 1.2) * 3, s.speed_goal - s.speed
+    own[at + 4], own[at + 5] = clip(s.yaw_error, -0.8, 0.8) * 2.5, s.turn * 2
+    own[at + 6], own[at + 7] = (s.mean_velocity[0] - s.speed) * 3, s.mean_velocity[1] * 3
+    at += 8
+    for i in range(_N_SERVOS):
+        own[at + i] = s.residual[i] * 2.4
+    at += _N_SERVOS
+    own[at], own[at + 1] = s.grade_forward * 10, s.grade_left * 10
+    own[at + 2], own[at + 3], own[at + 4] = s.varied[0] * 15, s.varied[1] * 10, s.varied[2] * 30
+    own[at + 5], own[at + 6] = s.varied[3] * 8, s.varied[4] * 8
+    own[at + 7], own[at + 8] = (1 - s.gate) * 2, choose(s.closing, 1.0, 0.0)
+    for i in range(len(mirror)):
+        value = choose(s.left_stance, sign[i] * own[mirror[i]], own[i])
+        seen[i] = clip(value, -LIMIT, LIMIT)
+
+
+@njit(cache=True, nogil=True)
+def look_all(state):  # type: ignore[no-untyped-def]
+    """`look` of every walker."""
+    for i in range(len(state)):
+        look(state[i])
+
+
+@njit(cache=True, nogil=True)
+def settle_all(state):  # type: ignore[no-untyped-def]
+    """`settle`, then `look` of every walker."""
+    for i in range(len(state)):
+        settle(state[i])
+        look(state[i])
+
+
+@njit(cache=True, nogil=True)
+def observe_all(state, mirror, sign):  # type: ignore[no-untyped-def]
+    """(n, N_OBSERVATION) float32."""
+    seen = np.empty((len(state), len(mirror)), np.float32)
+    own = np.empty(len(mirror))
+    for i in range(len(state)):
+        observe(state[i], mirror, sign, own, seen[i])
+    return seen

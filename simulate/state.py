@@ -1,0 +1,84 @@
+"""The state of n walkers as one table of records, which the compiled control step reads and writes.
+
+A law of the control step (`_balance_kernels`, `_gait_kernels`, `_look_kernels`) is written once, in terms of
+one walker `s`. Compiled, `s` is a record and every quantity a number; in plain numpy, `s` is `Columns` and
+every quantity an array over the walkers: the twin that the tests compare the compiled code with.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from footfall.models import body
+
+N_SENSOR = body.SENSOR_TOUCH.stop  # what control reads; sensors of the IMU come after
+
+# Residual (rad) for an action of 1.
+ACTION_SCALE = 3.3 * np.array([0.2, 0.2, 0.2] + [0.35, 0.25, 0.25, 0.35, 0.25, 0.15] * 2 + [0.2, 0.2])
+
+WALKER = np.dtype(
+    [
+        ("dt", float),  # s, control interval
+        # the body, after the last physics step
+        ("qpos", float, 7 + body.N_JOINTS),
+        ("qvel", float, 6 + body.N_JOINTS),
+        ("sensor", float, N_SENSOR),
+        ("fresh", bool),  # no physics yet, so no sensors
+        ("up", float, 3),  # against gravity, in the frame of qpos
+        ("ground", float),  # m, height under the pelvis
+        ("gradient", float, 2),  # of the ground, x and y
+        # commands
+        ("heading", float),
+        ("speed", float),
+        ("speed_goal", float),
+        ("turn", float),
+        ("turn_goal", float),
+        ("mean_velocity", float, 2),  # along and across the commanded heading
+        # the gait
+        ("phase", float),  # of the stride, 0 at the right heel strike
+        ("advance", float),  # of the phase in this control step
+        ("next_phase", float),
+        ("residual", float, body.N_SERVOS),  # feedback and policy as applied, in units of ACTION_SCALE
+        ("next_residual", float, body.N_SERVOS),
+        ("feedback", float, body.N_SERVOS),  # rad, for right stance
+        ("varied", float, 5),  # see variability.Variability
+        ("varied_goal", float, 5),
+        # standing
+        ("gate", float),  # 0 stands, 1 walks
+        ("gate_before", float),  # this control step
+        ("closing", bool),  # has decided to stand, or stands
+        ("stagger", float),  # rad, pose of the standing feet: one before the other
+        ("spread", float),  # rad, apart
+        # what observation, feedback and reward share: `look`
+        ("rotation", float, (3, 3)),  # body to world
+        ("yaw", float),
+        ("cos", float),
+        ("sin", float),
+        ("up_body", float, 3),
+        ("pitch", float),  # nose down, relative to gravity
+        ("roll", float),
+        ("yaw_error", float),
+        ("height", float),  # m, of the pelvis over the ground
+        ("grade_forward", float),
+        ("grade_left", float),
+        ("left_stance", bool),
+    ],
+    align=True,
+)
+
+
+class Columns:
+    """Records as columns: attribute `name` has the shape of one record's field, then (n,)."""
+
+    def __init__(self, records: np.ndarray) -> None:
+        names = records.dtype.names or ()
+        fields = {name: np.moveaxis(records[name], 0, -1) for name in names}
+        object.__setattr__(self, "_fields", fields)
+
+    def __getattr__(self, name: str) -> Any:
+        return self._fields[name]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        self._fields[name][...] = value
