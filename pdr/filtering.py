@@ -121,7 +121,7 @@ def run_filter(
         raise InputError('filter: smoothing needs update = "stance", one update a stance')
     found = found or detect(recording, pdr)
     stances, resets = found.stances, found.stances.resets
-    update = _updates(recording.t, found, None if by_stance else 2 * pdr.stance.reset_s)
+    update = updates(recording.t, found, None if by_stance else 2 * pdr.stance.reset_s)
     still_time = _still_time(recording.t, found.score, resets[stances.footfalls])
 
     now = InertialFilter(settings, align(recording, found.rest, start))
@@ -186,7 +186,7 @@ def _node(now: InertialFilter, recording: Recording, rows: slice, update: np.nda
     return Node(now.snapshot(), before, transition, put_right)
 
 
-def _updates(t: np.ndarray, found: Detected, still_period_s: float | None) -> np.ndarray:
+def updates(t: np.ndarray, found: Detected, still_period_s: float | None) -> np.ndarray:
     """(n,) update of each sample: at the resets, or at all still samples, rate too in a `still_period_s`."""
     update = np.full(len(t), MOVING)
     if still_period_s is None:
