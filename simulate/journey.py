@@ -1,4 +1,4 @@
-"""Walk a route, beginning with a stand: physics, steering and the truth that comes out.
+"""Walk a route from standing to standing: physics, steering and the truth that comes out.
 
 The physics moves the 1.75 m body (models.subject); what comes out is stretched to the subject.
 """
@@ -30,9 +30,12 @@ from footfall.streams import stream
 
 PHYSICS_STEP = 0.001  # s, of the subject's time
 SUBSTEPS = 30  # physics steps of a control step
-STAND_S = 4.0  # of standing, to come to rest, before the record begins
-_RUN_OUT = 8.0  # m
-_SLOWEST = 0.35  # m/s; a walk that takes longer than this has got stuck
+STAND_S = 16.0  # s of standing, to come to rest, before the record begins
+END_STAND_S = 5.0  # s of standing at the end
+# A standing foot would creep by tenths of a millimetre a second, on a slope by millimetres.
+_NOSLIP_ITERATIONS = 4
+_SLOWEST = 0.35  # m/s; a walk that takes longer than this, or to a stop longer than _SETTLING (s), is stuck
+_SETTLING = 20.0
 
 
 class FallError(InputError):
@@ -48,9 +51,10 @@ class Plan:
     name : of the scenario, for messages and provenance
     route : where to walk; ground : level when None
     pace : m/s commanded on straights
+    stops : pauses on the way, in walking order
     variability : of the gait, 1 = that of people; action_noise : SD of the noise on the policy's action
     wander, wander_time : m and s, slow lateral wander of the aim
-    calibration : s motionless before the first step
+    calibration : s of standing before the first step
     rate_hz : of the truth; divides 1 kHz
     """
 
@@ -60,6 +64,7 @@ class Plan:
     mount: Mount = field(default_factory=Mount)
     ground: Ground | None = None
     pace: float = 1.3
+    stops: tuple[Stop, ...] = ()
     variability: float = 1.0
     action_noise: float = 0.0
     wander: float = 0.0
@@ -92,23 +97,9 @@ def _shrunk(plan: Plan) -> Plan:
         route=small,
         ground=ground,
         pace=plan.pace / t,
+        stops=tuple(Stop(stop.distance / s, stop.duration / t) for stop in plan.stops),
         wander=plan.wander / s,
         wander_time=plan.wander_time / t,
-    )
-
-
-def _with_run_out(route: Route) -> Route:
-    """The route and some straight, level ground beyond its end: people do not stop on a line."""
-    step = float(route.s[1] - route.s[0])
-    away = np.arange(1, round(_RUN_OUT / step) + 1) * step
-    last, flat = route.heading[-1], np.zeros_like(away)
-    return Route(
-        s=np.concatenate([route.s, route.s[-1] + away]),
-        x=np.concatenate([route.x, route.x[-1] + away * np.cos(last)]),
-        y=np.concatenate([route.y, route.y[-1] + away * np.sin(last)]),
-        z=np.concatenate([route.z, flat + route.z[-1]]),
-        heading=np.concatenate([route.heading, flat + last]),
-        curvature=np.concatenate([route.curvature, flat]),
     )
 
 
@@ -134,14 +125,14 @@ class Moment:
 
 
 def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
-    """Stand and walk the route, one control step at a time.
+    """Stand, walk the route and stand, one control step at a time.
 
     Raises
     ------
     FallError, StrayError
         The walk did not reach its end.
     """
-    subject, small = plan.subject, _shrunk(replace(plan, route=_with_run_out(plan.route)))
+    subject, small = plan.subject, _shrunk(plan)
     route, step = small.route, PHYSICS_STEP / subject.time_scale
     model = build_body(subject.build, timestep=step, mount=plan.mount, ground=small.ground)
     walkers = Walkers(
@@ -150,11 +141,13 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
         rng=stream(plan.seed, "gait variability"),
         ground=None if small.ground is None else ground_lookup(small.ground),
     )
-    noise, end = stream(plan.seed, "action noise"), plan.route.length / subject.scale
+    noise = stream(plan.seed, "action noise")
+    first = Stop(0.0, (STAND_S + plan.calibration) / subject.time_scale)
+    last = Stop(route.length, END_STAND_S / subject.time_scale)
     pursuit = Pursuit(
         route,
         small.pace,
-        (Stop(0.0, STAND_S / subject.time_scale),),
+        (first, *small.stops, last),
         wander=small.wander,
         wander_time=small.wander_time,
         dt=SUBSTEPS * step,
@@ -170,15 +163,16 @@ def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
         variability=np.array([plan.variability]),
         habits=[subject.habits],
     )
-    waiting = STAND_S + 20
+    waiting = first.duration + last.duration + sum(stop.duration + _SETTLING for stop in small.stops) + 20
     limit = int((route.length / _SLOWEST + waiting) / (SUBSTEPS * step))
     try:
         for count in range(limit):
             standing = bool(walkers.gate.value[0] <= 0)
+            model.opt.noslip_iterations = _NOSLIP_ITERATIONS if standing else 0
             speed, turn = pursuit.command(
                 walkers.qpos[0, 0], walkers.qpos[0, 1], walkers.heading[0], walkers.speed[0], standing
             )
-            if pursuit.progress >= end:
+            if pursuit.finished:
                 return
             walkers.speed_goal[0], walkers.turn_goal[0] = speed, turn
             action = policy(walkers.observe())
@@ -210,10 +204,6 @@ def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | 
         if on_progress is not None and count % 100 == 0:
             on_progress(moment.progress)
     record = np.concatenate(chunks)[round(STAND_S / PHYSICS_STEP) :]
-    # The static bias is taken from the same unit held motionless in this pose (HDR paper, section 2): the
-    # simulated stand turns by a few thousandths of a degree a second, degrees over a walk.
-    still = np.repeat(record[:1], round(plan.calibration / PHYSICS_STEP), axis=0)
-    record = np.concatenate([still, record])
     if not np.isfinite(record).all():
         raise FallError(f"{plan.name}: the physics is no longer finite (seed {plan.seed})")
     return _Record(record[:, :3] * plan.subject.scale, record[:, 3:7], record[:, 7] / weight)
@@ -229,7 +219,7 @@ def _truth(record: _Record, factor: int) -> tuple[ImuTruth, np.ndarray, np.ndarr
 def walk(
     plan: Plan, policy: Policy | None = None, on_progress: Callable[[float], None] | None = None
 ) -> Walk:
-    """The truth of one walk along the plan's route: it begins with a stand and ends with a footfall.
+    """The truth of one walk along the plan's route, from standing to standing.
 
     Parameters
     ----------
@@ -249,11 +239,6 @@ def walk(
     truth, contact, stances = _truth(record, factor)
     if len(stances) < 3:
         raise FallError(f"{plan.name}: the walker made {len(stances)} footfalls, expected at least 3")
-    # A stance that the end of the walk cuts short is no footfall: end with the last whole one.
-    whole = stances[stances[:, 1] < len(truth.index) - 1]
-    end = truth.index[whole[-1, 1]] + 2 * factor
-    record = _Record(record.position[:end], record.quaternion[:end], record.contact[:end])
-    truth, contact, stances = _truth(record, factor)
     t = np.arange(len(truth.index)) * interval
     rest = np.zeros(len(t), dtype=bool)
     for first, last in stances:

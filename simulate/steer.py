@@ -87,6 +87,11 @@ class Pursuit:
         """Distance along the route (m)."""
         return float(self.route.s[self._row])
 
+    @property
+    def finished(self) -> bool:
+        """Every stop has been stood through."""
+        return not self._stops
+
     def command(
         self, x: float, y: float, heading: float, speed: float, standing: bool
     ) -> tuple[float, float]:
