@@ -10,7 +10,7 @@ __version__ = "0.1.0"
 # Strings only: nothing of the simulator is imported before an environment is made.
 _register(
     id="footfall/Walk-v0",
-    entry_point="footfall.simulate.env:WalkEnv",
+    entry_point="footfall.scenarios.environment:walk_env",
     vector_entry_point="footfall.simulate.env:WalkVectorEnv",
     max_episode_steps=333,
 )

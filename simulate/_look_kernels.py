@@ -71,7 +71,7 @@ def settle(s):  # type: ignore[no-untyped-def]
 def observe(s, mirror, sign, own, seen):  # type: ignore[no-untyped-def]
     """Fill `own` (N_OBSERVATION,) as it is, and `seen` with it mirrored to right stance.
 
-    The order is that of `observation._mirror`.
+    The order is that of `observation.LAYOUT`.
     """
     along, aside = turned(s, s.qvel[0], s.qvel[1])
     step_angle = 2 * np.pi * ((s.phase * 2) % 1)

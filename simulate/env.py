@@ -1,7 +1,7 @@
-"""The gymnasium environment: follow commands of speed and turn rate without falling.
+"""The task of following commands of speed and turn rate without falling, and many walkers at it on threads.
 
-`gymnasium.make("footfall/Walk-v0")` after `import footfall`; `gymnasium.make_vec` gives many walkers whose
-physics runs on threads, which is what training uses.
+`gymnasium.make_vec("footfall/Walk-v0")` makes the threaded environment, which is what training uses;
+`gymnasium.make` the one of `simulate.walk_env`.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from footfall.conventions import GRAVITY
+from footfall.errors import InputError
 from footfall.models.body import build_body
 from footfall.models.subject import Build, Habits
 from footfall.simulate.feedback import GAIN_START
@@ -77,8 +78,20 @@ def draw_habits(rng: np.random.Generator) -> Habits:
     )
 
 
+def rewarded_step(walkers: Walkers, action: np.ndarray) -> tuple[dict[str, np.ndarray], Trace]:
+    """Take a control step; the unweighted terms of its reward (n,) and its physics."""
+    before = walkers.residual
+    trace = walkers.step(action)
+    return reward_terms(walkers, trace, action, walkers.residual - before), trace
+
+
 class Task:
-    """n walkers, random commands, rewards and falls. The environments are thin faces of it."""
+    """n walkers, random commands, rewards and falls. The environments are thin faces of it.
+
+    Parameters
+    ----------
+    habits : of every walker; drawn anew at each reset when None
+    """
 
     def __init__(
         self,
@@ -89,9 +102,10 @@ class Task:
         timesteps: np.ndarray,
         threads: int = 0,
         rng: np.random.Generator,
+        habits: Habits | None = None,
     ) -> None:
         models = [build_body(build, timestep=step) for build, step in zip(builds, timesteps, strict=True)]
-        self.rng, self.difficulty = rng, difficulty
+        self.rng, self.difficulty, self.habits = rng, difficulty, habits
         self.walkers = Walkers(models, gains, rng=rng, threads=threads)
         self.until_command = np.zeros(len(builds))
         self.terms: dict[str, np.ndarray] = {}
@@ -137,7 +151,7 @@ class Task:
             position=np.zeros((n, 3)),
             standing=standing,
             variability=rng.uniform(0.5, 1.0, n) * d.variability * d.level,
-            habits=[draw_habits(rng) for _ in range(n)],
+            habits=[self.habits or draw_habits(rng) for _ in range(n)],
             joint_noise=calm * rng.normal(0, 0.02, (n, walkers.qpos.shape[1] - 7)),
             velocity_noise=calm * rng.normal(0, 0.05, (n, 3)),
         )
@@ -159,12 +173,9 @@ class Task:
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, np.ndarray, Trace]:
         """Rewards (n,), falls (n,) and the physics of one control step."""
-        walkers = self.walkers
-        before = walkers.residual
-        trace = walkers.step(action)
-        self.terms = reward_terms(walkers, trace, action, walkers.residual - before)
+        self.terms, trace = rewarded_step(self.walkers, action)
         self._change_commands()
-        return total(self.terms), walkers.fallen(), trace
+        return total(self.terms), self.walkers.fallen(), trace
 
     def _change_commands(self) -> None:
         d, rng, walkers = self.difficulty, self.rng, self.walkers
@@ -184,77 +195,14 @@ class Task:
         walkers.qvel[due, :3] += kick * rng.standard_normal((n, 3)) * [1, 1, 0.3]
 
 
-_OBSERVATION_SPACE = gym.spaces.Box(-LIMIT, LIMIT, (N_OBSERVATION,), np.float32)
-_ACTION_SPACE = gym.spaces.Box(-1.0, 1.0, (N_ACTION,), np.float32)
-
-
-class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
-    """One walker that follows random commands of speed and turn rate, stops and starts.
-
-    Observation: Box(-6, 6, (82,), float32), mirrored so that the stance leg is always the right one: height,
-    gravity in the pelvis, velocities, joint angles and rates, foot pressure, step phase, commands, residual,
-    grade, gait variability, gate of standing. Action: Box(-1, 1, (15,), float32), residual on the joint
-    servos' targets, held for 30 ms. Reward: `simulate.reward`. A fall terminates; the time limit (10 s)
-    truncates.
-
-    Parameters
-    ----------
-    build : the body that walks
-    difficulty : what is asked
-    feedback_gains : (32,) balance feedback under the action; the hand-set start when None
-    """
-
-    metadata = {"render_modes": []}  # noqa: RUF012 - gymnasium's declaration
-
-    def __init__(
-        self,
-        build: Build | None = None,
-        difficulty: Difficulty | None = None,
-        feedback_gains: np.ndarray | None = None,
-        render_mode: str | None = None,
-    ) -> None:
-        self.render_mode = render_mode
-        self.observation_space, self.action_space = _OBSERVATION_SPACE, _ACTION_SPACE
-        gains = np.array(GAIN_START) if feedback_gains is None else np.asarray(feedback_gains)
-        self._task = Task(
-            [build or Build()],
-            difficulty or Difficulty(kick=0.0),
-            gains,
-            timesteps=np.array([0.001]),
-            rng=np.random.default_rng(0),
-        )
-
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Start in mid-gait or standing, at a random phase, heading and command."""
-        super().reset(seed=seed)
-        self._task.seed(self.np_random)
-        self._task.reset(np.ones(1, dtype=bool))
-        return self._task.walkers.observe()[0], self._info()
-
-    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Walk for 30 ms."""
-        reward, fallen, _ = self._task.step(np.asarray(action, dtype=float)[None])
-        return self._task.walkers.observe()[0], float(reward[0]), bool(fallen[0]), False, self._info()
-
-    def close(self) -> None:
-        """Free the physics."""
-        self._task.walkers.close()
-
-    def _info(self) -> dict[str, Any]:
-        walkers = self._task.walkers
-        return {
-            "position": walkers.qpos[0, :3].copy(),
-            "yaw": float(walkers.yaw[0]),
-            "speed_command": float(walkers.speed[0]),
-            "turn_command": float(walkers.turn[0]),
-        }
+OBSERVATION_SPACE = gym.spaces.Box(-LIMIT, LIMIT, (N_OBSERVATION,), np.float32)
+ACTION_SPACE = gym.spaces.Box(-1.0, 1.0, (N_ACTION,), np.float32)
 
 
 class WalkVectorEnv(gym.vector.VectorEnv):
     """Many walkers of drawn bodies, stepped together on threads; resets within the step (SAME_STEP).
 
+    They follow random commands only. `infos["terms"]` holds the unweighted terms of the reward (n,) each,
     `infos["final_obs"]` holds the last observation of the walkers whose episode ended.
     """
 
@@ -271,9 +219,9 @@ class WalkVectorEnv(gym.vector.VectorEnv):
         max_episode_steps: int = EPISODE_STEPS,
     ) -> None:
         self.num_envs, self._limit = num_envs, max_episode_steps
-        self.single_observation_space, self.single_action_space = _OBSERVATION_SPACE, _ACTION_SPACE
-        self.observation_space = batch_space(_OBSERVATION_SPACE, num_envs)
-        self.action_space = batch_space(_ACTION_SPACE, num_envs)
+        self.single_observation_space, self.single_action_space = OBSERVATION_SPACE, ACTION_SPACE
+        self.observation_space = batch_space(OBSERVATION_SPACE, num_envs)
+        self.action_space = batch_space(ACTION_SPACE, num_envs)
         bodies, commands = np.random.SeedSequence(seed).spawn(2)
         draw = np.random.default_rng(bodies)
         gains = np.array(GAIN_START) if feedback_gains is None else np.asarray(feedback_gains)
@@ -292,7 +240,18 @@ class WalkVectorEnv(gym.vector.VectorEnv):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Start every walker anew, at staggered ages so that episodes do not end together."""
+        """Start every walker anew, at staggered ages so that episodes do not end together.
+
+        Raises
+        ------
+        InputError
+            Options: these walkers have none.
+        """
+        if options:
+            raise InputError(
+                f"option {next(iter(options))!r}: the threaded environment follows random commands only, "
+                "others can be had with vectorization_mode='sync' or 'async'"
+            )
         if seed is not None:
             self.task.seed(np.random.default_rng(seed))
         self.task.reset(np.ones(self.num_envs, dtype=bool))

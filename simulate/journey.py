@@ -124,68 +124,115 @@ class Moment:
     progress: float
 
 
-def stroll(plan: Plan, policy: Policy) -> Iterator[Moment]:
+class Outing:
+    """A plan on its way: one steered walker, which stands, walks the route and stands.
+
+    Take a control step with `walkers.step`, then `steer`, until it has `finished`.
+
+    Parameters
+    ----------
+    gains : (32,) of the balance feedback
+    stand : s before the first step
+
+    Attributes
+    ----------
+    walkers : of one, in its own units; route : what it follows, in the same
+    limit : control steps within which anything but a walker that is stuck has finished
+    """
+
+    def __init__(self, plan: Plan, gains: np.ndarray, *, stand: float) -> None:
+        subject, small = plan.subject, _shrunk(plan)
+        route, step = small.route, PHYSICS_STEP / subject.time_scale
+        model = build_body(subject.build, timestep=step, mount=plan.mount, ground=small.ground)
+        self.route, self._scale = route, subject.scale
+        self.walkers = Walkers(
+            [model],
+            gains,
+            rng=stream(plan.seed, "gait variability"),
+            ground=None if small.ground is None else ground_lookup(small.ground),
+        )
+        first = Stop(0.0, stand / subject.time_scale)
+        last = Stop(route.length, END_STAND_S / subject.time_scale)
+        self._pursuit = Pursuit(
+            route,
+            small.pace,
+            (first, *small.stops, last),
+            wander=small.wander,
+            wander_time=small.wander_time,
+            dt=SUBSTEPS * step,
+            rng=stream(plan.seed, "path wander"),
+        )
+        self.walkers.place(
+            np.ones(1, dtype=bool),
+            phase=np.zeros(1),
+            speed=np.zeros(1),
+            heading=route.heading[:1],
+            position=np.array([[route.x[0], route.y[0], route.z[0]]]),
+            standing=np.ones(1, dtype=bool),
+            variability=np.array([plan.variability]),
+            habits=[subject.habits],
+        )
+        waiting = first.duration + last.duration + sum(stop.duration + _SETTLING for stop in small.stops) + 20
+        self.limit = int((route.length / _SLOWEST + waiting) / (SUBSTEPS * step))
+        self.steer()
+
+    @property
+    def progress(self) -> float:
+        """Distance along the route, in the subject's metres."""
+        return self._pursuit.progress * self._scale
+
+    @property
+    def finished(self) -> bool:
+        """The last stop has been stood through."""
+        return self._pursuit.finished
+
+    def steer(self) -> None:
+        """Command speed and turn for the next control step.
+
+        Raises
+        ------
+        StrayError
+            The walker has left its route.
+        """
+        walkers = self.walkers
+        x, y = walkers.qpos[0, :2]
+        standing = bool(walkers.gate.value[0] <= 0)
+        walkers.models[0].opt.noslip_iterations = _NOSLIP_ITERATIONS if standing else 0
+        speed, turn = self._pursuit.command(x, y, walkers.heading[0], walkers.speed[0], standing)
+        walkers.speed_goal[0], walkers.turn_goal[0] = speed, turn
+
+
+def stroll(plan: Plan, policy: Policy, *, stand: float | None = None) -> Iterator[Moment]:
     """Stand, walk the route and stand, one control step at a time.
+
+    Parameters
+    ----------
+    stand : s before the first step; what a record wants when None
 
     Raises
     ------
     FallError, StrayError
         The walk did not reach its end.
     """
-    subject, small = plan.subject, _shrunk(plan)
-    route, step = small.route, PHYSICS_STEP / subject.time_scale
-    model = build_body(subject.build, timestep=step, mount=plan.mount, ground=small.ground)
-    walkers = Walkers(
-        [model],
-        policy.feedback_gains,
-        rng=stream(plan.seed, "gait variability"),
-        ground=None if small.ground is None else ground_lookup(small.ground),
-    )
-    noise = stream(plan.seed, "action noise")
-    first = Stop(0.0, (STAND_S + plan.calibration) / subject.time_scale)
-    last = Stop(route.length, END_STAND_S / subject.time_scale)
-    pursuit = Pursuit(
-        route,
-        small.pace,
-        (first, *small.stops, last),
-        wander=small.wander,
-        wander_time=small.wander_time,
-        dt=SUBSTEPS * step,
-        rng=stream(plan.seed, "path wander"),
-    )
-    walkers.place(
-        np.ones(1, dtype=bool),
-        phase=np.zeros(1),
-        speed=np.zeros(1),
-        heading=route.heading[:1],
-        position=np.array([[route.x[0], route.y[0], route.z[0]]]),
-        standing=np.ones(1, dtype=bool),
-        variability=np.array([plan.variability]),
-        habits=[subject.habits],
-    )
-    waiting = first.duration + last.duration + sum(stop.duration + _SETTLING for stop in small.stops) + 20
-    limit = int((route.length / _SLOWEST + waiting) / (SUBSTEPS * step))
+    noise, at = stream(plan.seed, "action noise"), 0.0
+    stand = STAND_S + plan.calibration if stand is None else stand
+    outing = Outing(plan, policy.feedback_gains, stand=stand)
+    walkers = outing.walkers
     try:
-        for count in range(limit):
-            standing = bool(walkers.gate.value[0] <= 0)
-            model.opt.noslip_iterations = _NOSLIP_ITERATIONS if standing else 0
-            speed, turn = pursuit.command(
-                walkers.qpos[0, 0], walkers.qpos[0, 1], walkers.heading[0], walkers.speed[0], standing
-            )
-            if pursuit.finished:
+        for count in range(outing.limit):
+            if outing.finished:
                 return
-            walkers.speed_goal[0], walkers.turn_goal[0] = speed, turn
-            action = policy(walkers.observe())
+            action, at = policy(walkers.observe()), outing.progress
             if plan.action_noise:
                 action = action + plan.action_noise * noise.standard_normal((1, N_ACTION))
             trace = walkers.step(action)
-            at = pursuit.progress * subject.scale
             if walkers.fallen()[0]:
                 raise FallError(
                     f"{plan.name}: the walker fell at {at:.0f} m ({count * SUBSTEPS * PHYSICS_STEP:.0f} s, "
-                    f"subject {subject.name}, seed {plan.seed}, pace {plan.pace:g} m/s)"
+                    f"subject {plan.subject.name}, seed {plan.seed}, pace {plan.pace:g} m/s)"
                 )
             yield Moment(walkers, trace, at)
+            outing.steer()
         raise FallError(f"{plan.name}: the walker got stuck at {at:.0f} m (seed {plan.seed})")
     finally:
         walkers.close()
