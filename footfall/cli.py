@@ -364,36 +364,32 @@ def track(
 
     The recording is judged by physics first; lost, doubled and clipped samples are told and handled.
     """
-    from dataclasses import replace
-
-    from footfall.formats import parse_units, read
-    from footfall.hdr.methods import require_methods
-    from footfall.hdr.methods import track as navigate
-    from footfall.pdr.detectors import require_detector
+    from footfall.formats import parse_units
     from footfall.pdr.pdr import PdrParams, StartPose
-    from footfall.pdr.rest import still_time
     from footfall.pdr.track import write_track
+    from footfall.tracking import track_file
 
     require_output(output, ".parquet", recording)
-    require_methods([method])
-    sizes, start = parse_units(unit or ()), StartPose(heading=math.radians(heading))
-    with blaming("--bias-time", "pdr"):
-        params = PdrParams() if bias_time is None else PdrParams(bias_s=bias_time)
-    params = replace(params, detector=require_detector(detector))
+    if bias_time is not None:
+        with blaming("--bias-time", "pdr"):
+            PdrParams(bias_s=bias_time)
     with ERR.status("navigating"):
-        samples, findings = read(recording, format, sizes=sizes, rate_hz=rate)
-        with blaming(recording):
-            if bias_time is None:
-                params = replace(params, bias_s=still_time(samples, params.bias_s))
-            result = navigate(samples, method, start, params)
-        write_track(
-            replace(result, meta={**result.meta, "read": findings.as_dict(), "detector": detector}), output
+        result = track_file(
+            recording,
+            method,
+            format=format,
+            sizes=parse_units(unit or ()),
+            rate_hz=rate,
+            detector=detector,
+            bias_s=bias_time,
+            start=StartPose(heading=math.radians(heading)),
         )
-    for sentence in findings.sentences():
+        write_track(result.track, output)
+    for sentence in result.findings.sentences():
         say(f"{recording}: {sentence}")
-    if bias_time is None and params.bias_s < PdrParams().bias_s:
-        say(f"{recording}: static bias averaged over the {params.bias_s:g} s that it rests")
-    say(f"{len(result)} footfalls: {output}")
+    if bias_time is None and result.bias_s < PdrParams().bias_s:
+        say(f"{recording}: static bias averaged over the {result.bias_s:g} s that it rests")
+    say(f"{len(result.track)} footfalls: {output}")
 
 
 @app.command()

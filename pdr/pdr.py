@@ -205,13 +205,16 @@ def dead_reckon(
         resets,
         params.tilt_gain,
     )
-    quaternion, position = quaternion[stances.footfalls], position[stances.footfalls]
+    t = recording.t[resets[stances.footfalls]]
+    return placed(t, quaternion[stances.footfalls], position[stances.footfalls], start)
+
+
+def placed(t: np.ndarray, quaternion: np.ndarray, position: np.ndarray, start: StartPose) -> Footfalls:
+    """Footfalls at stamps (n,), attitudes (n, 4), positions (n, 3), moved to where the walk starts."""
     heading = heading_of(quaternion)
     turn = Rotation.from_rotvec([0.0, 0.0, start.heading - heading[0]])
     position = turn.apply(position - position[0]) + np.asarray(start.position)
-    heading = heading - heading[0] + start.heading
-
-    return Footfalls.at(recording.t[resets[stances.footfalls]], position, heading)
+    return Footfalls.at(t, position, heading - heading[0] + start.heading)
 
 
 def detect(recording: Recording, params: PdrParams) -> Detected:
@@ -230,7 +233,7 @@ def detect(recording: Recording, params: PdrParams) -> Detected:
     stances = _stances_after(rest, find_stances(t, score, params.stance))
     if len(stances.footfalls) < 2:
         raise InputError(f"recording: no stride found after the {params.bias_s:g} s at rest")
-    _refuse_gaps(recording.t, int(stances.resets[0]), int(stances.resets[-1]), params.max_gap_s)
+    refuse_gaps(recording.t, int(stances.resets[0]), int(stances.resets[-1]), params.max_gap_s)
     return Detected(rest=rest, score=np.concatenate([score[:1], score]), stances=stances)
 
 
@@ -245,7 +248,8 @@ def _stances_after(rest: Rest, found: Stances) -> Stances:
     return Stances(resets=resets, footfalls=footfalls)
 
 
-def _refuse_gaps(t: np.ndarray, first: int, last: int, max_gap_s: float) -> None:
+def refuse_gaps(t: np.ndarray, first: int, last: int, max_gap_s: float) -> None:
+    """Raise InputError where samples first..last are further apart than `max_gap_s`."""
     step = np.diff(t[first : last + 1])
     worst = int(np.argmax(step))
     if step[worst] > max_gap_s:

@@ -1,0 +1,84 @@
+"""From a file to a track: whole where it fits into memory, block by block where it does not."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+from footfall.errors import InputError
+from footfall.formats.condition import Findings
+from footfall.formats.reader import WHOLE_ROWS, Blocks, open_source, read
+from footfall.hdr.methods import METHODS, require_methods
+from footfall.hdr.streamed import StreamedReckoning
+from footfall.hdr.tracks import Reckoning
+from footfall.pdr.detectors import require_detector
+from footfall.pdr.footfalls import Footfalls
+from footfall.pdr.pdr import PdrParams, StartPose
+from footfall.pdr.rest import still_time
+from footfall.pdr.stream import dead_reckon_blocks
+from footfall.pdr.track import Track
+
+
+class Tracked(NamedTuple):
+    """A track, what was wrong with its recording, and the T_bias (s) that the still start allowed."""
+
+    track: Track
+    findings: Findings
+    bias_s: float
+
+
+def track_file(
+    path: str | os.PathLike[str],
+    method: str,
+    *,
+    format: str = "auto",
+    sizes: Mapping[str, float] | None = None,
+    rate_hz: float | None = None,
+    detector: str = "threshold",
+    bias_s: float | None = None,
+    start: StartPose | None = None,
+) -> Tracked:
+    """Navigate a recording of any known format.
+
+    Parameters
+    ----------
+    method, detector : names in `METHODS` and `DETECTORS`
+    format, sizes, rate_hz : as of `footfall.formats.read`
+    bias_s : s, T_bias; None for as long as the recording rests, at most 25
+    start : where the walk starts
+
+    Raises
+    ------
+    InputError
+        What reading and navigating refuse; or a method that needs all samples, and too many of them.
+    """
+    require_methods([method])
+    params = PdrParams(detector=require_detector(detector))
+    params = params if bias_s is None else replace(params, bias_s=bias_s)
+    rest = still_time if bias_s is None else None
+    start = start or StartPose()
+    source = open_source(path, format, sizes, rate_hz)
+    used = params.bias_s
+
+    def run_through() -> Footfalls:
+        nonlocal used
+        footfalls, used = dead_reckon_blocks(blocks, params, start, rest_time=rest)
+        return footfalls
+
+    try:
+        if source.rows <= WHOLE_ROWS:
+            recording, findings = read(path, format, sizes=sizes, rate_hz=rate_hz)
+            if rest is not None:
+                used = rest(recording, used)
+            track = METHODS[method].run(Reckoning(recording, start, replace(params, bias_s=used)))
+        else:
+            blocks = Blocks(path, source)
+            track = METHODS[method].run(StreamedReckoning(run_through, start))
+            findings = blocks.findings
+    except InputError as error:
+        sentence = str(error).removeprefix("recording: ").removeprefix(f"{path}: ")
+        raise InputError(f"{path}: {sentence}") from None
+    meta = {**track.meta, "read": findings.as_dict(), "detector": detector, "bias_s": used}
+    return Tracked(replace(track, meta=meta), findings, used)
