@@ -25,7 +25,7 @@ class DirectionParams:
 
     count: int = 4
     reference: float | None = 0.0
-    learn_after: float = 10.0
+    learn_after: float = 5.0
     learn_agreement: float = 0.7
 
     def __post_init__(self) -> None:

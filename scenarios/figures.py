@@ -18,9 +18,24 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _TRUTH = "#222222"
-_COLOURS = {"pdr": "#c1440e", "hdr": "#1f6fb4", "hdr-basic": "#6a9f3a"}
+_COLOURS = {
+    "pdr": "#c1440e",
+    "hdr": "#1f6fb4",
+    "hdr-basic": "#6a9f3a",
+    "iez": "#c98a00",
+    "hde": "#7b4fa3",
+    "ihde": "#00806a",
+}
 _MORE = ("#7b4fa3", "#c98a00", "#2a9d8f", "#8d5524", "#d16ba5", "#444f9b")
-_LABELS = {"pdr": "PDR", "hdr": "PDR + HDR", "hdr-basic": "PDR + basic HDR"}
+_LABELS = {
+    "pdr": "PDR",
+    "hdr": "PDR + HDR",
+    "hdr-basic": "PDR + basic HDR",
+    "iez": "IEZ",
+    "hde": "HDE",
+    "ihde": "IHDE",
+}
+_MOST_PANELS = 8  # walks beyond these are in the tables, not in the figures
 _CAUSES = {
     "temperature": "#c1440e",
     "g_sensitivity": "#1f6fb4",
@@ -110,9 +125,17 @@ def save(figure: Figure, path: Path) -> None:
         figure.savefig(temporary, format="png", dpi=160)
 
 
-def _colours(methods: Sequence[str]) -> dict[str, str]:
+def colours_of(methods: Sequence[str]) -> dict[str, str]:
+    """A colour for each method, the same in every figure of a run."""
+    taken = {_COLOURS[method] for method in methods if method in _COLOURS}
+    free = [colour for colour in (*_MORE, *_COLOURS.values()) if colour not in taken]
     more = [method for method in methods if method not in _COLOURS]
-    return _COLOURS | {method: _MORE[i % len(_MORE)] for i, method in enumerate(more)}
+    return _COLOURS | {method: free[i % len(free)] for i, method in enumerate(more)}
+
+
+def label_of(method: str) -> str:
+    """A method's name in legends."""
+    return _LABELS.get(method, method)
 
 
 def _entitle(axis: Axes, text: str) -> None:
@@ -127,14 +150,14 @@ def _named(results: Sequence[Result], what: str) -> str:
     return f"{results[0].task.scenario.name}: {what}"
 
 
-def maps(results: Sequence[Result]) -> Figure:
+def maps(results: Sequence[Result], title: str | None = None) -> Figure:
     """Truth and every method's track, one panel a walk (the HDR paper's Figure 8)."""
     figure, axes = new_panels(len(results), 3.7, 3.3)
     for axis, result in zip(axes, results, strict=True):
-        colours = _colours(list(result.tracks))
+        colours = colours_of(list(result.tracks))
         for name, track in result.tracks.items():
             row = compare(track, result.walk)
-            axis.plot(*row.estimate.T, color=colours[name], lw=1.1, label=_LABELS.get(name, name))
+            axis.plot(*row.estimate.T, color=colours[name], lw=1.1, label=label_of(name))
             axis.plot(*row.estimate[-1], "o", color=colours[name], ms=4)
         truth = result.walk.footfalls.position[:, :2]
         axis.plot(*truth.T, color=_TRUTH, lw=2.2, alpha=0.45, label="truth", zorder=1)
@@ -142,14 +165,14 @@ def maps(results: Sequence[Result]) -> Figure:
         axis.set_aspect("equal", adjustable="datalim")
         _entitle(axis, _walk(result))
     label_edges(axes, "x (m)", "y (m)")
-    head(figure, _named(results, "tracks"), axes)
+    head(figure, title or _named(results, "tracks"), axes)
     return figure
 
 
 def heading_errors(results: Sequence[Result]) -> Figure:
     """Heading error against time, one panel a method, one line a walk."""
     methods = list(results[0].tracks)
-    colours = _colours(methods)
+    colours = colours_of(methods)
     figure, axes = new_panels(len(methods), 4.4, 3.0)
     for axis, name in zip(axes, methods, strict=True):
         ends = []
@@ -161,7 +184,7 @@ def heading_errors(results: Sequence[Result]) -> Figure:
         axis.axhline(0, color=_TRUTH, lw=0.8)
         if len(results) > 1:
             _number(axis, ends, [result.task.number + 1 for result in results])
-        _entitle(axis, _LABELS.get(name, name))
+        _entitle(axis, label_of(name))
     label_edges(axes, "time walked (min)", "heading error (deg)")
     numbers = " (numbers: walks)" if len(results) > 1 else ""
     head(figure, _named(results, f"heading error, estimate - truth{numbers}"), axes)
@@ -296,6 +319,7 @@ FIGURES = (*_ALWAYS, *_WITH_HDR)
 
 
 def run_figures(results: Sequence[Result], folder: Path) -> None:
-    """Every figure of a run that its methods allow, as NAME.png into `folder`."""
+    """Every figure of a run that its methods allow, as NAME.png into `folder`; of its first eight walks."""
+    shown = results[:_MOST_PANELS]
     for name, draw in (_ALWAYS | (_WITH_HDR if "hdr" in results[0].tracks else {})).items():
-        save(draw(results), folder / f"{name}.png")
+        save(draw(shown), folder / f"{name}.png")

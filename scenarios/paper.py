@@ -1,11 +1,15 @@
-"""What the HDR paper measured, for printing beside ours.
+"""What the papers measured, for printing beside ours.
 
-Borenstein, Ojeda and Kwanmuang (2008), Heuristic Reduction of Gyro Drift in IMU-based Personnel Tracking
+HDR: Borenstein, Ojeda and Kwanmuang (2008), Heuristic Reduction of Gyro Drift in IMU-based Personnel Tracking
 Systems, Table 2: final and average heading errors of five closed-loop walks of 1,800 m, five IMU units.
+IHDE: Deng, Cao, Wang and Wang (2018), An Improved Heuristic Drift Elimination Method for Indoor Pedestrian
+Positioning, Table 2: "the typical range of positioning errors for several tests".
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 
@@ -41,3 +45,16 @@ HDR_TABLE_2_MEAN = PaperRow(
 # The uncorrected errors of the five walks span this range (deg).
 UNCORRECTED_FINAL_RANGE = (102.0, 307.0)
 UNCORRECTED_AVERAGE_RANGE = (34.0, 145.0)
+
+# Scenario -> method -> range of P_err (% of the distance travelled); "> 20 %" has no upper end.
+IHDE_TABLE_2: Mapping[str, Mapping[str, tuple[float, float]]] = {
+    "ihde-test1": {"iez": (8.7, 9.6), "hde": (0.3, 0.6), "ihde": (0.2, 0.4)},
+    "ihde-test2": {"iez": (2.3, 2.8), "hde": (1.3, 1.7), "ihde": (0.4, 0.7)},
+    "ihde-test3": {"iez": (2.6, 3.2), "hde": (20.0, math.inf), "ihde": (0.3, 0.5)},
+}
+
+
+def range_text(values: tuple[float, float]) -> str:
+    """A range of IHDE's Table 2 as it is printed there."""
+    low, high = values
+    return f"{low:g} to {high:g}" if math.isfinite(high) else f"> {low:g}"

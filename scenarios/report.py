@@ -11,7 +11,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from footfall.scenarios.paper import HDR_TABLE_2, HDR_TABLE_2_MEAN
+from footfall.scenarios.paper import HDR_TABLE_2, HDR_TABLE_2_MEAN, IHDE_TABLE_2, range_text
 from footfall.scenarios.path import Path
 from footfall.scenarios.run import Result
 from footfall.scenarios.score import Score, improvement, mean_score
@@ -93,6 +93,8 @@ def run_report(name: str, results: Sequence[Result]) -> list[RenderableType]:
         parts.append(paper_table())
         if first.scenario.units and first.unit_seed in first.scenario.units:
             parts.append(Text(_CHOSEN_UNITS, style="dim"))
+    if name in IHDE_TABLE_2:
+        parts.append(ihde_table(name, results))
     others = others_table(results)
     return [*parts, *([others] if others else []), position_table(results)]
 
@@ -154,6 +156,28 @@ def paper_table() -> Group:
             style="bold" if mean else None,
         )
     return titled("The paper's own walks: Borenstein et al. (2008), Table 2", table)
+
+
+def ihde_table(name: str, results: Sequence[Result]) -> Group:
+    """The row of Deng et al. (2018), Table 2, for one of their tests: ours with its spread, and theirs.
+
+    A method on the paper's own filter (`hde-paper`) stands beside the paper's row of its name (HDE).
+    """
+    table = new_table("", "mean", "median", "10 to 90 %\nof the walks", "smallest to\nlargest", "the paper's")
+    for method, scores in scores_by_method([result.scores for result in results]).items():
+        errors = np.array([score.return_error_pct for score in scores])
+        low, high = np.percentile(errors, [10, 90])
+        paper = IHDE_TABLE_2[name].get(method.removesuffix("-paper"))
+        table.add_row(
+            method,
+            f"{errors.mean():.2f}",
+            f"{np.median(errors):.2f}",
+            f"{low:.2f} to {high:.2f}",
+            f"{errors.min():.2f} to {errors.max():.2f}",
+            range_text(paper) if paper else "",
+        )
+    title = f"Return error P_err (% of the distance), {len(results)} walks; Deng et al. (2018), Table 2"
+    return titled(title, table)
 
 
 def others_table(results: Sequence[Result]) -> Group | None:

@@ -16,12 +16,14 @@ from footfall.hdr.methods import METHODS
 from footfall.pdr.track import write_track
 from footfall.recording import write_recording
 from footfall.scenarios.figures import FIGURES, run_figures
+from footfall.scenarios.heading_figures import HEADING_FIGURES, heading_figures
 from footfall.scenarios.run import Result
 from footfall.simulate.budget import write_budget
 from footfall.simulate.walk import write_walk
 
+_FIGURES = "|".join((*FIGURES, *HEADING_FIGURES))
 _OURS = re.compile(
-    rf"walk-\d+(\.(footfalls|recording|drift|{'|'.join(METHODS)}))?\.parquet|({'|'.join(FIGURES)})\.png"
+    rf"walk-\d+(\.(footfalls|recording|drift|{'|'.join(METHODS)}))?\.parquet|({_FIGURES})\.png"
 )
 
 
@@ -87,4 +89,5 @@ def _write_all(results: Sequence[Result], document: Mapping[str, Any], folder: P
         for name, track in result.tracks.items():
             write_track(track, folder / f"{stem}.{name}.parquet")
     run_figures(results, folder)
+    heading_figures(results, folder)
     (folder / "scores.json").write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")

@@ -1,0 +1,92 @@
+"""The tables of ihde_table2.py, as Markdown, and where they go in a page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from footfall.scenarios.paper import IHDE_TABLE_2, range_text
+
+if TYPE_CHECKING:
+    from ihde_table2 import Scattered
+
+
+def _markdown(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def _number(value: float) -> str:
+    return f"{value:.1f}" if value >= 10 else f"{value:.2f}"
+
+
+def table_2(errors: Mapping[str, Mapping[str, np.ndarray]]) -> str:
+    """Test -> method -> (seeds, 3) as a table: return and heading errors, the paper's range beside them."""
+    tests = list(errors)
+    head = ["P_err (%), median (10th to 90th percentile); mean heading error (deg)"]
+    for test in tests:
+        head += [test, "heading", "paper"]
+    rows = []
+    for method in errors[tests[0]]:
+        row = [f"`{method}`" if " " not in method else method]
+        for test in tests:
+            low, middle, high = np.percentile(errors[test][method][:, 0], [10, 50, 90])
+            paper = IHDE_TABLE_2[test].get(method)
+            row += [
+                f"{_number(middle)} ({_number(low)} to {_number(high)})",
+                f"{errors[test][method][:, 1].mean():.1f}",
+                range_text(paper) if paper else "",
+            ]
+        rows.append(row)
+    return _markdown(head, rows)
+
+
+def setting_table(settings: Mapping[str, tuple[str, str]]) -> str:
+    """What the tuning walks chose, beside the defaults."""
+    rows = [[name, *words] for name, words in settings.items()]
+    return _markdown(["", "chosen on the tuning walks", "default"], rows)
+
+
+def scatter_table(found: Sequence[Scattered], gaits: Sequence[str], tests: Sequence[str]) -> str:
+    """Return errors against how much the stance yaw scatters."""
+    head = ["gait", "stance yaw SD (deg)"]
+    for test in tests:
+        head += [f"{test}: IEZ", "IHDE", "no mean heading"]
+    rows = []
+    for gait in gaits:
+        mine = [one for one in found if one.gait == gait]
+        row = [gait, f"{np.mean([one.yaw_sd_deg for one in mine]):.1f}" if mine else ""]
+        for test in tests:
+            errors = np.array([one.errors for one in mine if one.test == test])
+            row += [_number(value) for value in np.median(errors, axis=0)] if len(errors) else ["", "", ""]
+        rows.append(row)
+    best = ["the paper's", ""]
+    for test in tests:
+        paper = IHDE_TABLE_2[test]
+        best += [range_text(paper["iez"]), range_text(paper["ihde"]), ""]
+    return _markdown(head, [*rows, best])
+
+
+def fill(page: Path, tables: Mapping[str, str]) -> None:
+    """Put each table between its two marks in the page: <!-- table NAME --> and <!-- end -->.
+
+    Raises
+    ------
+    SystemExit
+        The page lacks a mark.
+    """
+    text = page.read_text(encoding="utf-8")
+    for name, table in tables.items():
+        text, count = re.subn(
+            rf"(<!-- table {re.escape(name)} -->\n).*?(<!-- end -->)",
+            lambda found, table=table: f"{found[1]}\n{table}\n\n{found[2]}",
+            text,
+            flags=re.DOTALL,
+        )
+        if count != 1:
+            raise SystemExit(f"{page}: expected one mark <!-- table {name} -->, found {count}")
+    page.write_text(text, encoding="utf-8")
