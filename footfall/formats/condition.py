@@ -15,6 +15,7 @@ FILL_S = 0.25  # the longest hole that is filled: dead reckoning refuses longer 
 JITTER = 0.1  # of an interval; stamps that scatter more are not evenly spaced
 MOST_OFF = 5.0  # intervals by which a stamp may lie off an even spacing
 DOUBLED = 0.9  # share of the rows with the stamp of the one before that must repeat it, or none is a double
+LARGEST = {"t": 1e19, "gyro": 1e10, "accel": 1e10}  # in any unit: beyond it arithmetic fails
 HELD_S = 0.003  # a clipped signal stays at its extreme at least so long, and three samples
 CLIPPED_MIN = np.repeat([np.radians(100.0), 15.0], 3)  # rad/s, m/s2; no sensor's range is less
 
@@ -136,9 +137,12 @@ def _without_empty(samples: Samples) -> tuple[Samples, int]:
         axis = int(np.argmin(finite[row])) if not finite[row].all() else -1
         name = "t" if axis < 0 else ("gyro" if axis < 3 else "accel")
         raise InputError(f"recording: {name} is not finite at row {samples.row + row}")
-    if not empty.any():
-        return samples, 0
-    return samples.take(~empty), int(empty.sum())
+    samples = samples.take(~empty) if empty.any() else samples
+    for name, largest in LARGEST.items():
+        size = np.abs(getattr(samples, name)).reshape(len(samples), -1).max(axis=1)
+        if size.max() > largest:
+            raise InputError(f"recording: {name} is {size.max():.3g} somewhere, which no sensor says")
+    return samples, int(empty.sum())
 
 
 def _without_doubled(samples: Samples) -> tuple[Samples, int]:

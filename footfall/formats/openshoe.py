@@ -44,7 +44,7 @@ def _blocks(path: Path, notes: list[str]) -> Iterator[Samples]:
             lines, held = (lines[:-1], lines[-1:]) if len(lines) > 1 else (lines, [])
             values = _numbers(path, lines, row, last=not held)
             if row == 0 and len(values) > 1:
-                start, interval = values[0, 7], float(np.median(_steps(values[:, 6]))) / TICKS
+                start, interval = values[0, 7], _interval(path, values[:, 6])
             number = values[:, 7]
             if not held and len(number) and number[-1] <= before:
                 values, number = values[:-1], number[:-1]  # its number was cut short
@@ -76,6 +76,9 @@ def _numbers(path: Path, lines: list[str], row: int, last: bool) -> np.ndarray:
         raise
 
 
-def _steps(counter: np.ndarray) -> np.ndarray:
+def _interval(path: Path, counter: np.ndarray) -> float:
     step = np.diff(counter)
-    return step[step > 0]  # the timer starts anew every second
+    step = step[step > 0]  # the timer starts anew every second
+    if not len(step):
+        raise InputError(f"{path}: Counter never increases")
+    return float(np.median(step)) / TICKS

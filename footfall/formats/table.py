@@ -127,7 +127,11 @@ def _csv(
         reader = pa_csv.open_csv(
             path,
             read_options=pa_csv.ReadOptions(
-                block_size=BLOCK_BYTES, column_names=list(names), skip_rows=1, use_threads=False
+                block_size=BLOCK_BYTES,
+                column_names=list(names),
+                skip_rows=1,
+                use_threads=False,
+                encoding="latin-1",  # numbers are ASCII; damaged bytes must not stop the reader
             ),
             parse_options=pa_csv.ParseOptions(delimiter=delimiter, invalid_row_handler=skip),
             convert_options=pa_csv.ConvertOptions(
@@ -156,8 +160,8 @@ def _csv(
 
 def _ends_with(path: Path, text: str) -> bool:
     with open(path, "rb") as file:
-        file.seek(-min(path.stat().st_size, len(text.encode()) + 2), os.SEEK_END)
-        return file.read().rstrip(b"\r\n").endswith(text.encode().rstrip(b"\r\n"))
+        file.seek(-min(path.stat().st_size, len(text.encode("latin-1")) + 2), os.SEEK_END)
+        return file.read().rstrip(b"\r\n").endswith(text.encode("latin-1").rstrip(b"\r\n"))
 
 
 def _open_parquet(path: Path) -> tuple[Any, list[str]]:
