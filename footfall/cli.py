@@ -181,7 +181,12 @@ def run(
 @app.command()
 def walk(
     scenario: ScenarioArgument,
-    output: OutputOption,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="Parquet file to write; may be left out with --view.", show_default=False
+        ),
+    ] = None,
     seed: Annotated[
         int | None, typer.Option(min=0, help="Seed of this walk; the scenario says if left out.")
     ] = None,
@@ -201,6 +206,9 @@ def walk(
             help="Where on the shoe the IMU sits (see `footfall list`); the scenario says if left out."
         ),
     ] = None,
+    view: Annotated[
+        bool, typer.Option("--view", help="Watch it first in MuJoCo's viewer, which needs a screen.")
+    ] = False,
     no_cache: NoCacheOption = False,
 ) -> None:
     """Walk a scenario once and write the truth: where the IMU was, and what a perfect one would say.
@@ -216,7 +224,10 @@ def walk(
     from footfall.simulate.truth import divisor
     from footfall.simulate.walk import write_walk
 
-    require_output(output, ".parquet")
+    if output is not None:
+        require_output(output, ".parquet")
+    elif not view:
+        raise InputError("Missing option '--output' / '-o' (see `footfall walk --help`)")
     plan = load_scenario(scenario).plan(number - 1)
     if mount is not None:
         if mount not in MOUNTS:
@@ -227,6 +238,12 @@ def walk(
         plan = replace(plan, rate_hz=rate)
     if seed is not None:
         plan = replace(plan, seed=seed)
+    if view:
+        from footfall.scenarios.render import view as show
+
+        show(plan)
+    if output is None:
+        return
     with Progress(console=ERR, transient=True, disable=not ERR.is_terminal) as progress:
         bar = progress.add_task("walking", total=plan.route.length)
         truth = cached_walk(
@@ -252,10 +269,6 @@ def render(
 
     Without a screen it draws through EGL; set MUJOCO_GL to choose another way.
     """
-    import os
-
-    if sys.platform == "linux" and "DISPLAY" not in os.environ:
-        os.environ.setdefault("MUJOCO_GL", "egl")  # read when MuJoCo is first imported
     from footfall.scenarios.render import render as draw
     from footfall.scenarios.scenario import load_scenario
 

@@ -26,7 +26,7 @@ View = tuple[float, float, float]
 QUARTER_VIEW: View = (130.0, -16.0, 4.0)  # from the front, on the right, where the IMU is
 SIDE_VIEW: View = (100.0, -8.0, 3.0)
 _EYE_HEIGHT = 0.88  # m above the ground, of what the camera looks at
-_FLAT_N = 30.0  # heel and ball that carry this make a print
+_LOADED_N, _FLAT_M = 200.0, 0.02  # a foot that carries so much and is so flat leaves a print
 _PRINT_SPACING = 0.25  # m between prints of one foot
 _HEEL, _BALL = -0.03, 0.115  # m before the ankle
 _PRINTS = 80
@@ -65,11 +65,11 @@ class Stage:
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
-        touch = self.walkers.sensor[0, body.SENSOR_TOUCH].reshape(2, 3)
-        for side, (heel_n, ball_n, _) in zip("rl", touch, strict=True):
-            if min(heel_n, ball_n) < _FLAT_N:
-                continue
+        force = self.walkers.sensor[0, body.SENSOR_TOUCH].reshape(2, 3).sum(axis=1)
+        for side, load in zip("rl", force, strict=True):
             heel, ball = (self._sole(f"foot_{side}", x) for x in (_HEEL, _BALL))
+            if load < _LOADED_N or abs(ball[2] - heel[2]) > _FLAT_M:
+                continue
             last = next((place for foot, _, place in reversed(self._prints) if foot == side), None)
             if last is None or np.linalg.norm(ball - last) > _PRINT_SPACING:
                 self._prints.append((side, heel, ball))
