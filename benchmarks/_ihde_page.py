@@ -53,18 +53,23 @@ def setting_table(settings: Mapping[str, tuple[str, str]]) -> str:
 
 def scatter_table(found: Sequence[Scattered], gaits: Sequence[str], tests: Sequence[str]) -> str:
     """Return errors against how much the stance yaw scatters."""
-    head = ["gait", "stance yaw SD (deg)"]
+    head = ["gait", "stance yaw SD (deg)", "foot beside the path, standing / walking (deg)"]
     for test in tests:
         head += [f"{test}: IEZ", "IHDE", "no mean heading"]
     rows = []
     for gait in gaits:
         mine = [one for one in found if one.gait == gait]
-        row = [gait, f"{np.mean([one.yaw_sd_deg for one in mine]):.1f}" if mine else ""]
+        if not mine:
+            continue
+        yaw, standing, walking = np.mean(
+            [(one.yaw_sd_deg, one.standing_deg, one.walking_deg) for one in mine], axis=0
+        )
+        row = [gait, f"{yaw:.1f}", f"{standing:.1f} / {walking:.1f}"]
         for test in tests:
             errors = np.array([one.errors for one in mine if one.test == test])
             row += [_number(value) for value in np.median(errors, axis=0)] if len(errors) else ["", "", ""]
         rows.append(row)
-    best = ["the paper's", ""]
+    best = ["the paper's", "", ""]
     for test in tests:
         paper = IHDE_TABLE_2[test]
         best += [range_text(paper["iez"]), range_text(paper["ihde"]), ""]

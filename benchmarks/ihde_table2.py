@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from _common import err, options, out, run_all, write_json
 from _ihde_page import fill, scatter_table, setting_table, table_2
-from robustness import gait
+from robustness import gait, places, steady
 
 from footfall.errors import InputError
 from footfall.hdr.hde import Hde, Hde2010Params, HdeParams
@@ -253,11 +253,20 @@ VARIANTS: Mapping[str, Mapping[str, float]] = {
 
 @dataclass(frozen=True)
 class Scattered:
-    """One walk of a gait: SD of the stance yaw about the path (deg), and return errors (%) of some ways."""
+    """One walk of a gait.
+
+    Attributes
+    ----------
+    yaw_sd_deg : SD of the stance yaw about the path
+    standing_deg, walking_deg : the foot's heading less the path's, at the start and in the mean
+    errors : return errors (%) of some ways
+    """
 
     gait: str
     test: str
     yaw_sd_deg: float
+    standing_deg: float
+    walking_deg: float
     errors: Sequence[float]
 
 
@@ -268,8 +277,17 @@ def scattered(job: tuple[str, Job]) -> Scattered | None:
     if isinstance(errors, str):
         err.print(f"[red]left out:[/red] {errors}")
         return None
-    found = gait(one.scenario.plan(0), one.walk().footfalls)
-    return Scattered(name, one.scenario.name, found.stance_yaw_sd_deg, errors[:, 0].tolist())
+    plan, falls = one.scenario.plan(0), one.walk().footfalls
+    rows = places(plan.route, falls.position)
+    off = np.degrees(falls.heading - plan.route.heading[rows])
+    return Scattered(
+        name,
+        one.scenario.name,
+        gait(plan, falls).stance_yaw_sd_deg,
+        float(off[0]),
+        float(off[steady(plan.route)[rows]].mean()),
+        errors[:, 0].tolist(),
+    )
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
