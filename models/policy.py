@@ -23,7 +23,8 @@ class Policy:
 
     Attributes
     ----------
-    weights, biases : of each layer; ELU between them
+    weights, biases : of each layer, in single precision as they come from training; ELU between the layers,
+        all in double precision
     feedback_gains : (32,) of the balance feedback that the policy was trained on top of
     digest : hash of the weights, part of every walk's provenance
     meta : how they were made (command, seed, samples)
@@ -66,7 +67,7 @@ def load_policy(path: str | Path) -> Policy:
         with np.load(source) as data:
             layers = sum(name.startswith("weight_") for name in data.files)
             weights, biases = (
-                tuple(np.ascontiguousarray(data[f"{name}_{i}"], dtype=float) for i in range(layers))
+                tuple(np.ascontiguousarray(data[f"{name}_{i}"]) for i in range(layers))
                 for name in ("weight", "bias")
             )
             gains = data["feedback_gains"]

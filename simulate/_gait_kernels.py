@@ -1,12 +1,10 @@
 """Compiled: how the phase runs, how variability slews, and the servo targets of a control step.
 
 Laws in terms of one walker `s` (see state.py); the face is walkers.py. What the gait is made of comes as an
-argument (`Reference`), not as constants, so that compiled code in numba's cache never holds an earlier one.
+argument (`REFERENCE`), not as constants, so that compiled code in numba's cache never holds an earlier one.
 """
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -23,37 +21,24 @@ _SLEW_S = 0.12
 _FROZEN = 0.06  # of the stride after a heel strike, where the phase of a stand rests
 
 
-class Reference(NamedTuple):
-    """The reference gait: table (phases, 17) rad, and per servo what scales, shifts and leans it (17,)."""
-
-    table: np.ndarray
-    swings: np.ndarray
-    bends: np.ndarray
-    adduction: np.ndarray
-    toe_out_right: np.ndarray
-    toe_out_left: np.ndarray
-    standing: np.ndarray
-    stagger: np.ndarray
-    spread: np.ndarray
-    ankles: np.ndarray
-    subtalar: np.ndarray
-    scale: np.ndarray
-
-
-REFERENCE = Reference(
-    table=gait.TABLE,
-    swings=gait.SWINGS,
-    bends=gait.BENDS,
-    adduction=gait.mask("hip_adduction"),
-    toe_out_right=gait.mask("hip_rotation_r"),
-    toe_out_left=gait.mask("hip_rotation_l"),
-    standing=gait.STANDING,
-    stagger=gait.STAGGER,
-    spread=gait.SPREAD,
-    ankles=gait.mask("ankle"),
-    subtalar=gait.mask("subtalar_r") - gait.mask("subtalar_l"),
-    scale=ACTION_SCALE,
-)
+# The reference gait: a table (phases, 17) rad, and per servo (17,) what scales, shifts and leans it.
+_PARTS = {
+    "table": gait.TABLE,
+    "swings": gait.SWINGS,
+    "bends": gait.BENDS,
+    "adduction": gait.mask("hip_adduction"),
+    "toe_out_right": gait.mask("hip_rotation_r"),
+    "toe_out_left": gait.mask("hip_rotation_l"),
+    "standing": gait.STANDING,
+    "stagger": gait.STAGGER,
+    "spread": gait.SPREAD,
+    "ankles": gait.mask("ankle"),
+    "subtalar": gait.mask("subtalar_r") - gait.mask("subtalar_l"),
+    "scale": ACTION_SCALE,
+}
+REFERENCE = np.zeros(1, [(name, float, part.shape) for name, part in _PARTS.items()])  # one record
+for _name, _part in _PARTS.items():
+    REFERENCE[_name] = _part
 
 
 @register_jitable
@@ -94,36 +79,38 @@ def servo(s, ref, j, hip, knee, stagger):  # type: ignore[no-untyped-def]
 
 
 @register_jitable
-def angle(ref, j, phase, gate, factor, offset, standing, slope):  # type: ignore[no-untyped-def]
-    """Reference angle of servo j."""
+def row_at(ref, phase):  # type: ignore[no-untyped-def]
+    """Row of the table."""
     count = len(ref.table)
-    row = np.intp((phase % 1) * count) % count
-    return gate * (ref.table[row, j] * factor + offset) + (1 - gate) * standing + slope
+    return np.intp((phase % 1) * count) % count
 
 
 @register_jitable
-def targets(s, ref, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (k, 17) rad with the servo targets of the k physics steps."""
+def targets(s, ref, rows, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (k, 17) rad with the servo targets of the k physics steps; `rows` (k,) is to scribble on."""
     count = len(out)
     resting = s.closing & (s.gate <= 0)
+    for i in range(count):
+        rows[i] = row_at(ref, choose(resting, s.next_phase, s.phase + s.advance * ((i + 1) / count)))
     hip, knee = amplitudes(s)
     for j in range(len(ref.scale)):
         factor, offset, standing, slope = servo(s, ref, j, hip, knee, 1.0)
         for i in range(count):
             part = (i + 1) / count
-            phase = choose(resting, s.next_phase, s.phase + s.advance * part)
             gate = s.gate_before + (s.gate - s.gate_before) * part
+            walking = ref.table[rows[i], j] * factor + offset
             residual = (1 - part) * s.residual[j] + part * s.next_residual[j]
-            out[i, j] = angle(ref, j, phase, gate, factor, offset, standing, slope) + ref.scale[j] * residual
+            out[i, j] = gate * walking + (1 - gate) * standing + slope + ref.scale[j] * residual
 
 
 @register_jitable
 def reference(s, ref, stagger, out):  # type: ignore[no-untyped-def]
     """Fill `out` (17,) rad with the reference angles of this moment."""
+    row = row_at(ref, s.phase)
     hip, knee = amplitudes(s)
     for j in range(len(ref.scale)):
         factor, offset, standing, slope = servo(s, ref, j, hip, knee, stagger)
-        out[j] = angle(ref, j, s.phase, s.gate, factor, offset, standing, slope)
+        out[j] = s.gate * (ref.table[row, j] * factor + offset) + (1 - s.gate) * standing + slope
 
 
 @njit(cache=True, nogil=True)
@@ -139,17 +126,18 @@ def stride_all(state):  # type: ignore[no-untyped-def]
 @njit(cache=True, nogil=True)
 def targets_all(state, ref, substeps):  # type: ignore[no-untyped-def]
     """`slew`, then `targets` (n, substeps, 17) of every walker."""
-    out = np.empty((len(state), substeps, len(ref.scale)))
+    out = np.empty((len(state), substeps, len(ref[0].scale)))
+    rows = np.empty(substeps, np.intp)
     for i in range(len(state)):
         slew(state[i])
-        targets(state[i], ref, out[i])
+        targets(state[i], ref[0], rows, out[i])
     return out
 
 
 @njit(cache=True, nogil=True)
 def reference_all(state, ref, stagger):  # type: ignore[no-untyped-def]
     """`reference` (n, 17) of every walker."""
-    out = np.empty((len(state), len(ref.scale)))
+    out = np.empty((len(state), len(ref[0].scale)))
     for i in range(len(state)):
-        reference(state[i], ref, stagger, out[i])
+        reference(state[i], ref[0], stagger, out[i])
     return out

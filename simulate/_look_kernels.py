@@ -15,9 +15,11 @@ from footfall.simulate._elementwise import choose, clip, turned
 SPEED_SLEW = 0.8  # m/s2, of the commanded speed
 TURN_SLEW = 2.0  # rad/s2
 LIMIT = 6.0  # of an observation
+_DOWN, _TOPPLED, _LOST_HEADING = 0.75, 0.75, 1.1  # m, cosine, rad: a body beyond these has fallen
 _MEAN_VELOCITY_S = 0.5
 _TOUCH_SCALE = 400.0  # N
 _N_JOINTS, _N_SERVOS = body.N_JOINTS, body.N_SERVOS
+_N_QPOS, _N_QVEL = 7 + _N_JOINTS, 6 + _N_JOINTS
 _TOUCH, _N_TOUCH = body.SENSOR_TOUCH.start, 6
 
 
@@ -41,6 +43,14 @@ def look(s):  # type: ignore[no-untyped-def]
     s.height = s.qpos[2] - s.ground
     s.grade_forward, s.grade_left = turned(s, s.gradient[0], s.gradient[1])
     s.left_stance = np.floor(s.phase * 2) % 2 == 1
+    finite = np.isfinite(s.height)
+    for j in range(_N_QPOS):
+        finite = finite & np.isfinite(s.qpos[j])
+    for j in range(_N_QVEL):
+        finite = finite & np.isfinite(s.qvel[j])
+    upright = r[0, 2] * s.up[0] + r[1, 2] * s.up[1] + r[2, 2] * s.up[2]
+    astray = np.abs(s.yaw_error) > _LOST_HEADING
+    s.fallen = (s.height < _DOWN) | (upright < _TOPPLED) | astray | np.logical_not(finite)
 
 
 @register_jitable
@@ -113,11 +123,30 @@ def look_all(state):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def settle_all(state):  # type: ignore[no-untyped-def]
-    """`settle`, then `look` of every walker."""
+def start_all(state):  # type: ignore[no-untyped-def]
+    """(n, 1 + nq + nv) physics states: time 0, qpos, qvel."""
+    out = np.zeros((len(state), 1 + _N_QPOS + _N_QVEL))
     for i in range(len(state)):
-        settle(state[i])
-        look(state[i])
+        for j in range(_N_QPOS):
+            out[i, 1 + j] = state[i].qpos[j]
+        for j in range(_N_QVEL):
+            out[i, 1 + _N_QPOS + j] = state[i].qvel[j]
+    return out
+
+
+@njit(cache=True, nogil=True)
+def land_all(state, after, sensor):  # type: ignore[no-untyped-def]
+    """Take over the last of the physics states (n, k, 1 + nq + nv) and sensors; `settle` and `look`."""
+    for i in range(len(state)):
+        s = state[i]
+        for j in range(_N_QPOS):
+            s.qpos[j] = after[i, -1, 1 + j]
+        for j in range(_N_QVEL):
+            s.qvel[j] = after[i, -1, 1 + _N_QPOS + j]
+        for j in range(len(s.sensor)):
+            s.sensor[j] = sensor[i, -1, j]
+        settle(s)
+        look(s)
 
 
 @njit(cache=True, nogil=True)

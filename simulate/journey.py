@@ -240,17 +240,20 @@ def stroll(plan: Plan, policy: Policy, *, stand: float | None = None) -> Iterato
 
 def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | None) -> _Record:
     """Walk, and keep the IMU site and the load on its foot."""
-    touch = np.arange(3) + body.SENSOR_TOUCH.start + (0 if plan.mount.foot == "right" else 3)
-    columns = np.r_[body.SENSOR_IMU_POSITION, body.SENSOR_IMU_QUATERNION]
-    chunks, weight = [], 1.0
+    first = body.SENSOR_TOUCH.start + (0 if plan.mount.foot == "right" else 3)
+    touch = slice(first, first + 3)
+    pose = slice(body.SENSOR_IMU_POSITION.start, body.SENSOR_IMU_QUATERNION.stop)
+    poses, touches, weight = [], [], 1.0
     for count, moment in enumerate(stroll(plan, policy)):
         sensor = moment.trace.sensor[0]
-        load = sensor[:, touch].sum(axis=1, keepdims=True)
-        chunks.append(np.concatenate([sensor[:, columns], load], axis=1))
-        weight = float(sum(moment.walkers.models[0].body_mass)) * GRAVITY
+        poses.append(sensor[:, pose].copy())
+        touches.append(sensor[:, touch].copy())
+        if count == 0:
+            weight = float(sum(moment.walkers.models[0].body_mass)) * GRAVITY
         if on_progress is not None and count % 100 == 0:
             on_progress(moment.progress)
-    record = np.concatenate(chunks)[round(STAND_S / PHYSICS_STEP) :]
+    record = np.column_stack([np.concatenate(poses), np.concatenate(touches).sum(axis=1)])
+    record = record[round(STAND_S / PHYSICS_STEP) :]
     if not np.isfinite(record).all():
         raise FallError(f"{plan.name}: the physics is no longer finite (seed {plan.seed})")
     return _Record(record[:, :3] * plan.subject.scale, record[:, 3:7], record[:, 7] / weight)

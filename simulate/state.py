@@ -64,6 +64,7 @@ WALKER = np.dtype(
         ("grade_forward", float),
         ("grade_left", float),
         ("left_stance", bool),
+        ("fallen", bool),  # down, toppled, turned away from the commanded heading, or not finite
     ],
     align=True,
 )

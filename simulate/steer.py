@@ -5,12 +5,14 @@ In the units of the walker (the 1.75 m body: models.subject).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from footfall.conventions import wrap
 from footfall.errors import InputError
+from footfall.simulate._steer_kernels import pursue
 from footfall.simulate.route import Route
 
 TURN_LIMIT = 1.0  # rad/s
@@ -74,10 +76,12 @@ class Pursuit:
     ) -> None:
         self.route, self.rng, self.dt = route, rng, dt
         self.spacing = float(route.s[1] - route.s[0])
+        self._line = tuple(np.ascontiguousarray(values) for values in (route.x, route.y, route.heading))
         self._limit = speed_limits(route, pace)
         self._stops = list(stops)
         self._stood = 0.0
-        self._wander, self._decay = wander, np.exp(-dt / wander_time)
+        self._decay = math.exp(-dt / wander_time)
+        self._stir = wander * math.sqrt(1 - self._decay**2)
         self._offset = wander * float(rng.standard_normal())
         self._row = 0
         self._window = int(_SEARCH / self.spacing) + 1
@@ -102,27 +106,16 @@ class Pursuit:
         StrayError
             More than 1.5 m off the route.
         """
-        route, row = self.route, self._row
-        rows = slice(row, row + self._window)
-        distance2 = (route.x[rows] - x) ** 2 + (route.y[rows] - y) ** 2
-        nearest = int(np.argmin(distance2))
-        self._row = row + nearest
-        stray = float(np.sqrt(distance2[nearest]))
+        normal = float(self.rng.standard_normal())
+        self._offset = self._decay * self._offset + self._stir * normal
+        ahead = round((_LOOK_AHEAD + _LOOK_AHEAD_S * float(speed)) / self.spacing)
+        self._row, stray, aim_x, aim_y = pursue(
+            *self._line, self.spacing, self._row, self._window, x, y, ahead, self._offset
+        )
         if stray > STRAY_LIMIT:
             raise StrayError(f"the walker strayed {stray:.1f} m off its path at {self.progress:.0f} m")
-        self._offset = self._decay * self._offset + self._wander * np.sqrt(1 - self._decay**2) * float(
-            self.rng.standard_normal()
-        )
-        ahead = round((_LOOK_AHEAD + _LOOK_AHEAD_S * speed) / self.spacing)
-        aim = self._row + ahead
-        last = len(route.s) - 1
-        beyond = max(0, aim - last) * self.spacing  # straight on after the route's end
-        aim = min(aim, last)
-        direction = route.heading[aim]
-        aim_x = route.x[aim] + beyond * np.cos(direction) - self._offset * np.sin(direction)
-        aim_y = route.y[aim] + beyond * np.sin(direction) + self._offset * np.cos(direction)
-        bearing = float(wrap(np.arctan2(aim_y - y, aim_x - x) - heading))
-        turn = float(np.clip(_BEARING_GAIN * bearing, -TURN_LIMIT, TURN_LIMIT))
+        bearing = float(wrap(math.atan2(aim_y - y, aim_x - x) - heading))
+        turn = min(max(_BEARING_GAIN * bearing, -TURN_LIMIT), TURN_LIMIT)
         return self._speed(standing), turn
 
     def _speed(self, standing: bool) -> float:
@@ -131,9 +124,9 @@ class Pursuit:
             return wanted
         stop = self._stops[0]
         left = stop.distance - self.progress
-        allowed = np.sqrt(2 * SLOWING * max(left, 0.0))
+        allowed = math.sqrt(2 * SLOWING * max(left, 0.0))
         if allowed > 0.35:
-            return min(wanted, float(allowed))
+            return min(wanted, allowed)
         if standing:
             self._stood += self.dt
             if self._stood >= stop.duration:

@@ -19,7 +19,7 @@ from footfall.models import body, gait
 from footfall.models.subject import Habits
 from footfall.simulate._balance_kernels import act_all
 from footfall.simulate._gait_kernels import REFERENCE, reference_all, stride_all, targets_all
-from footfall.simulate._look_kernels import look_all, settle_all
+from footfall.simulate._look_kernels import land_all, look_all, start_all
 from footfall.simulate.feedback import gain_records
 from footfall.simulate.heights import gait_heights, standing_height
 from footfall.simulate.observation import observe
@@ -88,6 +88,7 @@ class Walkers:
                 f"{self.substeps} physics steps of {timesteps.max():.4g} s are no control interval of "
                 f"{CONTROL_INTERVAL} s (10 % off at the most)"
             )
+        self._n_sensor = models[0].nsensordata
         self._data = [mujoco.MjData(models[0]) for _ in range(max(1, threads))]
         self._rollout = rollout.Rollout(nthread=threads)
         self._gait_height = np.array([gait_heights(model) for model in _distinct(models)])
@@ -98,7 +99,7 @@ class Walkers:
         state["up"], state["fresh"] = [0.0, 0.0, 1.0], True
         self.variability, self.gate = Variability(state), Gate(state["gate"], state["closing"])
         self.gate.value[:] = 1.0
-        # Views: what is written to them is what the next control step sees.
+        # Views: what is written to them is what the next control step sees (`up`: the next `place`).
         self.qpos, self.qvel, self.sensor = state["qpos"], state["qvel"], state["sensor"]
         self.up, self.fresh = state["up"], state["fresh"]
         self.phase, self.left_stance = state["phase"], state["left_stance"]
@@ -111,7 +112,7 @@ class Walkers:
         self.up_body, self.pitch, self.roll = state["up_body"], state["pitch"], state["roll"]
         self.yaw_error, self.height = state["yaw_error"], state["height"]
         self.grade_forward, self.grade_left = state["grade_forward"], state["grade_left"]
-        self._find_ground()
+        self._find_ground(self.qpos[:, 0], self.qpos[:, 1])
         look_all(state)
 
     def close(self) -> None:
@@ -161,7 +162,7 @@ class Walkers:
         qpos[:, 6] = a * tilt[:, 3] + b * tilt[:, 0]
         joints = np.zeros((m, body.N_JOINTS))
         pose = gate * walking + (1 - gate) * gait.STANDING
-        slope = forward[:, None] * REFERENCE.ankles + left[:, None] * REFERENCE.subtalar
+        slope = forward[:, None] * REFERENCE["ankles"] + left[:, None] * REFERENCE["subtalar"]
         joints[:, body.SERVO_JOINT] = pose + slope
         qpos[:, 7:] = joints + joint_noise
         for side in "rl":  # the knee's stop
@@ -184,7 +185,7 @@ class Walkers:
         self.variability.place(mask, variability, habits)
         self.gate.value[mask], self.gate.closing[mask] = np.where(standing, 0.0, 1.0), standing
         self.fresh[mask] = True
-        self._find_ground()
+        self._find_ground(self.qpos[:, 0], self.qpos[:, 1])
         look_all(self._state)
 
     @property
@@ -202,12 +203,12 @@ class Walkers:
         copy: np.ndarray = self._state["residual"].copy()
         return copy
 
-    def _find_ground(self) -> None:
+    def _find_ground(self, x: np.ndarray, y: np.ndarray) -> None:
         state = self._state
         if self.ground is None:
             state["gradient"] = self.up[:, :2]
         else:
-            state["ground"], state["gradient"] = self.ground(self.qpos[:, 0], self.qpos[:, 1])
+            state["ground"], state["gradient"] = self.ground(x, y)
 
     def observe(self) -> np.ndarray:
         """(n, N_OBSERVATION) float32, mirrored to right stance."""
@@ -237,10 +238,8 @@ class Walkers:
             self.variability.draw(rows, half, self.rng)
         target = targets_all(state, REFERENCE, k)
 
-        nq, nv = self.qpos.shape[1], self.qvel.shape[1]
-        start = np.zeros((n, 1 + nq + nv))
-        start[:, 1 : 1 + nq], start[:, 1 + nq :] = self.qpos, self.qvel
-        after, sensor = np.empty((n, k, 1 + nq + nv)), np.empty((n, k, self.models[0].nsensordata))
+        nq, start = self.qpos.shape[1], start_all(state)
+        after, sensor = np.empty((n, k, start.shape[1])), np.empty((n, k, self._n_sensor))
         # The shapes are right by construction: unchecked, a call costs 50 us less.
         self._rollout.rollout(
             self.models,
@@ -252,13 +251,10 @@ class Walkers:
             state=after,
             sensordata=sensor,
         )
-        trace = Trace(after[:, :, 1 : 1 + nq], after[:, :, 1 + nq :], sensor, target)
-
-        self.qpos[:], self.qvel[:] = trace.qpos[:, -1], trace.qvel[:, -1]
-        self.sensor[:] = sensor[:, -1, : self.sensor.shape[1]]
-        self._find_ground()
-        settle_all(state)
-        return trace
+        if self.ground is not None:
+            self._find_ground(after[:, -1, 1], after[:, -1, 2])
+        land_all(state, after, sensor)
+        return Trace(after[:, :, 1 : 1 + nq], after[:, :, 1 + nq :], sensor, target)
 
     def reference_now(self) -> np.ndarray:
         """(n, 17) reference angles at the current phase; a stagger is better lost than kept."""
@@ -273,9 +269,8 @@ class Walkers:
 
     def fallen(self) -> np.ndarray:
         """(n,) bool: down, toppled, turned away from the commanded heading, or not finite."""
-        upright = np.einsum("ni,ni->n", self.rotation[:, :, 2], self.up)
-        finite = np.isfinite(self.qpos).all(axis=1) & np.isfinite(self.qvel).all(axis=1)
-        return (self.height < 0.75) | (upright < 0.75) | (np.abs(self.yaw_error) > 1.1) | ~finite
+        copy: np.ndarray = self._state["fallen"].copy()
+        return copy
 
 
 def _distinct(models: Sequence[mujoco.MjModel]) -> Sequence[mujoco.MjModel]:

@@ -13,6 +13,7 @@ from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import Build, Habits
 from footfall.simulate import _balance_kernels, _gait_kernels, _look_kernels, walkers
 from footfall.simulate._gait_kernels import REFERENCE
+from footfall.simulate._steer_kernels import pursue
 from footfall.simulate.feedback import GAIN_SCALE, GAIN_START, gain_records
 from footfall.simulate.ground import ground_lookup
 from footfall.simulate.observation import MIRROR, N_OBSERVATION, SIGN, observe
@@ -32,16 +33,16 @@ def plain_stride(state: np.ndarray) -> np.ndarray:
     return np.floor(state["next_phase"] * 2) != before
 
 
-def plain_targets(state: np.ndarray, ref: _gait_kernels.Reference, substeps: int) -> np.ndarray:
+def plain_targets(state: np.ndarray, ref: np.ndarray, substeps: int) -> np.ndarray:
     _gait_kernels.slew(Columns(state))
-    out = np.empty((len(state), substeps, N_ACTION))
-    _gait_kernels.targets(Columns(state), ref, np.moveaxis(out, 0, -1))
+    out, rows = np.empty((len(state), substeps, N_ACTION)), np.empty((substeps, len(state)), int)
+    _gait_kernels.targets(Columns(state), ref.view(np.recarray)[0], rows, np.moveaxis(out, 0, -1))
     return out
 
 
-def plain_reference(state: np.ndarray, ref: _gait_kernels.Reference, stagger: float) -> np.ndarray:
+def plain_reference(state: np.ndarray, ref: np.ndarray, stagger: float) -> np.ndarray:
     out = np.empty((len(state), N_ACTION))
-    _gait_kernels.reference(Columns(state), ref, stagger, out.T)
+    _gait_kernels.reference(Columns(state), ref.view(np.recarray)[0], stagger, out.T)
     return out
 
 
@@ -49,7 +50,14 @@ def plain_look(state: np.ndarray) -> None:
     _look_kernels.look(Columns(state))
 
 
-def plain_settle(state: np.ndarray) -> None:
+def plain_start(state: np.ndarray) -> np.ndarray:
+    return np.concatenate([np.zeros((len(state), 1)), state["qpos"], state["qvel"]], axis=1)
+
+
+def plain_land(state: np.ndarray, after: np.ndarray, sensor: np.ndarray) -> None:
+    nq, n_sensor = state["qpos"].shape[1], state["sensor"].shape[1]
+    state["qpos"], state["qvel"] = after[:, -1, 1 : 1 + nq], after[:, -1, 1 + nq :]
+    state["sensor"] = sensor[:, -1, :n_sensor]
     _look_kernels.settle(Columns(state))
     plain_look(state)
 
@@ -102,8 +110,11 @@ def test_a_control_step_is_its_twin(seed: int) -> None:
     np.testing.assert_allclose(targets, plain_targets(plain, REFERENCE, 10), rtol=0, atol=1e-12)
     reference = _gait_kernels.reference_all(compiled, REFERENCE, 0.3)
     np.testing.assert_allclose(reference, plain_reference(plain, REFERENCE, 0.3), rtol=0, atol=1e-12)
-    _look_kernels.settle_all(compiled)
-    plain_settle(plain)
+    start = _look_kernels.start_all(compiled)
+    np.testing.assert_array_equal(start, plain_start(plain))
+    after, sensor = start[:, None] + rng.normal(0, 0.1, (n, 2, 1)), rng.uniform(0, 500, (n, 2, 31))
+    _look_kernels.land_all(compiled, after, sensor)
+    plain_land(plain, after, sensor)
     assert_same(compiled, plain)
 
 
@@ -122,7 +133,7 @@ def test_a_body_that_is_not_finite_harms_no_other(seed: int, broken: float) -> N
         _balance_kernels.act_all(one, gains, action)
         _gait_kernels.stride_all(one)
         targets = _gait_kernels.targets_all(one, REFERENCE, 3)
-        _look_kernels.settle_all(one)
+        _look_kernels.land_all(one, _look_kernels.start_all(one)[:, None], one["sensor"][:, None].copy())
         results.append((observe(one)[1:], targets[1:], one[1:]))
     for with_it, without in zip(*results, strict=True):
         np.testing.assert_array_equal(with_it, without)
@@ -166,7 +177,8 @@ def test_walks_are_those_of_the_twin(monkeypatch: pytest.MonkeyPatch) -> None:
         ("stride_all", plain_stride),
         ("targets_all", plain_targets),
         ("look_all", plain_look),
-        ("settle_all", plain_settle),
+        ("start_all", plain_start),
+        ("land_all", plain_land),
         ("observe", plain_observe),
     ):
         monkeypatch.setattr(walkers, name, twin)
@@ -212,3 +224,20 @@ def test_the_ground_is_bilinear(seed: int) -> None:
     np.testing.assert_allclose(gradient, np.column_stack([b + d * y, c + d * x]), atol=1e-12)
     lost, _ = look(np.array([-1e9, np.nan, 1e300]), np.array([0.0, np.inf, 1e300]))
     assert np.isfinite(lost).all()
+
+
+@settings(max_examples=50, deadline=None)
+@given(SEEDS, st.integers(0, 59), st.integers(1, 30), st.integers(0, 80))
+def test_the_pursuit_is_its_twin(seed: int, row: int, window: int, ahead: int) -> None:
+    """The nearest of the samples that a step may reach, and an aim ahead, also beyond the route's end."""
+    rng, spacing = np.random.default_rng(seed), 0.05
+    px, py, heading = np.cumsum(rng.normal(0, 0.04, (3, 60)), axis=1)
+    x, y, offset = px[row] + rng.normal(0, 0.2), py[row] + rng.normal(0, 0.2), rng.normal(0, 0.1)
+    found = pursue(px, py, heading, spacing, row, window, x, y, ahead, offset)
+    distance = np.hypot(px - x, py - y)[row : row + window]
+    nearest = row + int(np.argmin(distance))
+    aim = min(nearest + ahead, 59)
+    along = np.array([np.cos(heading[aim]), np.sin(heading[aim])])
+    left = np.array([-along[1], along[0]])
+    goal = [px[aim], py[aim]] + (nearest + ahead - aim) * spacing * along + offset * left
+    np.testing.assert_allclose(found, [nearest, distance.min(), *goal], rtol=0, atol=1e-12)
