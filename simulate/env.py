@@ -17,8 +17,8 @@ from gymnasium.vector.utils import batch_space
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
 from footfall.models.body import build_body
+from footfall.models.policy import stock_policy
 from footfall.models.subject import Build, Habits
-from footfall.simulate.feedback import GAIN_START
 from footfall.simulate.observation import LIMIT, N_OBSERVATION
 from footfall.simulate.reward import reward_terms, total
 from footfall.simulate.walkers import N_ACTION, Trace, Walkers
@@ -195,6 +195,11 @@ class Task:
         walkers.qvel[due, :3] += kick * rng.standard_normal((n, 3)) * [1, 1, 0.3]
 
 
+def balance_gains(asked: np.ndarray | None) -> np.ndarray:
+    """(32,) gains of the balance feedback under the action: as asked, or the shipped policy's."""
+    return stock_policy().feedback_gains if asked is None else np.asarray(asked, dtype=float)
+
+
 OBSERVATION_SPACE = gym.spaces.Box(-LIMIT, LIMIT, (N_OBSERVATION,), np.float32)
 ACTION_SPACE = gym.spaces.Box(-1.0, 1.0, (N_ACTION,), np.float32)
 
@@ -224,13 +229,12 @@ class WalkVectorEnv(gym.vector.VectorEnv):
         self.action_space = batch_space(ACTION_SPACE, num_envs)
         bodies, commands = np.random.SeedSequence(seed).spawn(2)
         draw = np.random.default_rng(bodies)
-        gains = np.array(GAIN_START) if feedback_gains is None else np.asarray(feedback_gains)
         # People of other statures have other time scales (models.subject).
         timesteps = timestep * draw.uniform(0.94, 1.09, num_envs)
         self.task = Task(
             [draw_build(draw) for _ in range(num_envs)],
             difficulty or Difficulty(),
-            gains,
+            balance_gains(feedback_gains),
             timesteps=timesteps,
             threads=threads,
             rng=np.random.default_rng(commands),

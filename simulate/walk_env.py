@@ -11,10 +11,16 @@ import gymnasium as gym
 import numpy as np
 
 from footfall.errors import InputError
-from footfall.models.policy import stock_policy
 from footfall.models.subject import SUBJECTS, Build, Subject, draw_subject
 from footfall.simulate.draw import QUARTER_VIEW, Painter, Stage, Window
-from footfall.simulate.env import ACTION_SPACE, OBSERVATION_SPACE, Difficulty, Task, rewarded_step
+from footfall.simulate.env import (
+    ACTION_SPACE,
+    OBSERVATION_SPACE,
+    Difficulty,
+    Task,
+    balance_gains,
+    rewarded_step,
+)
 from footfall.simulate.journey import PHYSICS_STEP, Outing, Plan
 from footfall.simulate.reward import WEIGHTS, total
 from footfall.simulate.steer import StrayError
@@ -76,8 +82,7 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
         self.observation_space, self.action_space = OBSERVATION_SPACE, ACTION_SPACE
         self._defaults = {"scenario": scenario, "subject": subject}
         self._difficulty = difficulty or Difficulty(kick=0.0)
-        gains = stock_policy().feedback_gains if feedback_gains is None else feedback_gains
-        self._gains = np.asarray(gains, dtype=float)
+        self._gains = balance_gains(feedback_gains)
         self._plan_of, self._plans = plan_of, dict[str, Plan]()
         self._course: _Commands | _Path | None = None
         self._stage: Stage | None = None
