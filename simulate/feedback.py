@@ -63,10 +63,10 @@ class Gains(NamedTuple):
     swing_toe_lift: float
 
 
-# Hand-set start and search scale of each gain.
+# Where the search begins (found by such a search for an earlier, flat sole) and the scale of each gain.
 GAIN_START = Gains(
-    0.4, 0.05, 0, 0.6, 0.08, 0, 0.5, 0.05, 0, 0.5, 0.08, 0, 0.1, 0.1, 0, 0.05, 0.1, 0.3, 0.05,
-    0.6, 0.2, 0.1, 0.0, 0.6, 0.25, 0.3, -0.02, 0.3, 0.1, 0.1, 0.1, 0.03,
+    -0.13, 0.14, 0.25, 0.57, 0.06, 0.05, 0.18, 0.44, -0.09, 0.02, 0.06, 0.08, -0.02, 0.05, -0.53, -0.08, 0.42,
+    -0.14, 0.12, 1.86, -0.70, 0.43, 0.23, 0.70, 0.34, 0.63, 0.03, 0.15, -0.09, -0.08, -0.23, 0.23,
 )  # fmt: skip
 GAIN_SCALE = Gains(
     0.4, 0.05, 0.08, 0.5, 0.08, 0.08, 0.5, 0.08, 0.05, 0.4, 0.08, 0.08, 0.15, 0.2, 0.2, 0.15, 0.3, 0.3, 0.05,

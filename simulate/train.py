@@ -49,7 +49,7 @@ def tune_gains(seed: int, generations: int) -> np.ndarray:
     start, scale = np.array(GAIN_START), np.array(GAIN_SCALE)
     search = cma.CMAEvolutionStrategy(
         np.zeros(len(start)),
-        0.35,
+        0.2,
         {"popsize": _CANDIDATES, "verbose": -9, "seed": seed + 1, "CMA_diagonal": 30},
     )
     idle = np.zeros((n, N_ACTION))
@@ -191,8 +191,8 @@ def main() -> None:
         "--out", type=Path, required=True, help="folder of checkpoints and log; resumes from it"
     )
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--samples", type=float, default=9e6, help="control steps to learn from")
-    parser.add_argument("--generations", type=int, default=400, help="of CMA-ES for the feedback gains")
+    parser.add_argument("--samples", type=float, default=8e6, help="control steps to learn from")
+    parser.add_argument("--generations", type=int, default=200, help="of CMA-ES for the feedback gains")
     parser.add_argument("--threads", type=int, default=2, help="for the physics")
     arguments = parser.parse_args()
     train(arguments.out, arguments.seed, int(arguments.samples), arguments.generations, arguments.threads)
