@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path as File
 from typing import Annotated
 
@@ -17,6 +18,7 @@ from footfall.models.subject import SUBJECTS, Subject
 from footfall.scenarios.path import Path, PathSpec, build_path
 from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height
 from footfall.simulate.journey import PHYSICS_STEP, Plan
+from footfall.simulate.steer import Stop
 from footfall.simulate.truth import divisor
 from footfall.toml import Strict, read_toml
 
@@ -56,6 +58,13 @@ class GaitTable(Strict):
     wander_time_s: float = Field(4.0, ge=0.5, le=60)
 
 
+class StopTable(Strict):
+    """A pause on the way."""
+
+    at_m: float = Field(gt=0)
+    for_s: float = Field(gt=0, le=3600)
+
+
 class TemperatureTable(Strict):
     """The sensor warms up indoors and is carried out just before its calibration."""
 
@@ -93,6 +102,7 @@ class ScenarioFile(Strict):
     subjects: Annotated[tuple[SubjectEntry, ...], Field(strict=False, min_length=1)]
     path: PathSpec
     gait: GaitTable
+    stops: Annotated[tuple[StopTable, ...], Field(strict=False)] = ()
     temperature: TemperatureTable
     sensor: SensorTable
     seeds: SeedTable
@@ -110,6 +120,7 @@ class Scenario:
     path : where to walk
     cell : m, of the terrain's grid
     subjects : used in turn from walk to walk
+    stops : pauses, in walking order
     pace : m/s, asked of the walker on straights
     variability : of the gait, 1 = that of people; action_noise : SD of the noise on the walker's actions
     wander, wander_time : m and s, slow lateral wander of the steering's aim
@@ -117,7 +128,7 @@ class Scenario:
     imu : stock name or path of a data sheet
     mount : name of a mounting on the shoe
     rate_hz : of truth and recording
-    calibration : s of motionless recording before the first footfall
+    calibration : s of standing before the first footfall
     seed : of walk 0; walks : how many by default
     units : seeds of sensors, used in turn; None: each walk's own seed
     """
@@ -127,6 +138,7 @@ class Scenario:
     path: Path
     cell: float
     subjects: tuple[Subject, ...]
+    stops: tuple[Stop, ...]
     pace: float
     variability: float
     action_noise: float
@@ -159,6 +171,7 @@ class Scenario:
             mount=MOUNTS[self.mount],
             ground=self.terrain,
             pace=self.pace,
+            stops=self.stops,
             variability=self.variability,
             action_noise=self.action_noise,
             wander=self.wander,
@@ -212,6 +225,7 @@ def _scenario(file: File, content: ScenarioFile) -> Scenario:
         path=path,
         cell=content.terrain.cell_m,
         subjects=tuple(_subject(i, entry) for i, entry in enumerate(content.subjects)),
+        stops=_stops(content.stops, path.route.length),
         pace=gait.pace_m_s,
         variability=gait.variability,
         action_noise=gait.action_noise,
@@ -228,6 +242,19 @@ def _scenario(file: File, content: ScenarioFile) -> Scenario:
         walks=seeds.walks,
         units=seeds.units,
     )
+
+
+def _stops(tables: tuple[StopTable, ...], length: float) -> tuple[Stop, ...]:
+    """In walking order; 3 m apart and from the ends, or there is no walking between them."""
+    at = [0.0, *(table.at_m for table in tables), length]
+    for i, (before, after) in enumerate(pairwise(at)):
+        if after - before < 3.0:
+            key, value = (f"stops.{i}.at_m", after) if i < len(tables) else (f"stops.{i - 1}.at_m", before)
+            raise InputError(
+                f"{key} = {value:g}: expected at least 3 m beyond the stop (or the start) before it and "
+                f"before the path's end at {length:g} m"
+            )
+    return tuple(Stop(table.at_m, table.for_s) for table in tables)
 
 
 def _subject(i: int, entry: str | SubjectTable) -> Subject:
