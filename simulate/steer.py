@@ -76,7 +76,7 @@ class Pursuit:
     ) -> None:
         self.route, self.rng, self.dt = route, rng, dt
         self.spacing = float(route.s[1] - route.s[0])
-        self._line = tuple(np.ascontiguousarray(values) for values in (route.x, route.y, route.heading))
+        self._line = np.column_stack([route.x, route.y, route.heading])
         self._limit = speed_limits(route, pace)
         self._stops = list(stops)
         self._stood = 0.0
@@ -110,7 +110,7 @@ class Pursuit:
         self._offset = self._decay * self._offset + self._stir * normal
         ahead = round((_LOOK_AHEAD + _LOOK_AHEAD_S * float(speed)) / self.spacing)
         self._row, stray, aim_x, aim_y = pursue(
-            *self._line, self.spacing, self._row, self._window, x, y, ahead, self._offset
+            self._line, self.spacing, self._row, self._window, x, y, ahead, self._offset
         )
         if stray > STRAY_LIMIT:
             raise StrayError(f"the walker strayed {stray:.1f} m off its path at {self.progress:.0f} m")

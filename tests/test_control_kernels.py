@@ -233,7 +233,7 @@ def test_the_pursuit_is_its_twin(seed: int, row: int, window: int, ahead: int) -
     rng, spacing = np.random.default_rng(seed), 0.05
     px, py, heading = np.cumsum(rng.normal(0, 0.04, (3, 60)), axis=1)
     x, y, offset = px[row] + rng.normal(0, 0.2), py[row] + rng.normal(0, 0.2), rng.normal(0, 0.1)
-    found = pursue(px, py, heading, spacing, row, window, x, y, ahead, offset)
+    found = pursue(np.column_stack([px, py, heading]), spacing, row, window, x, y, ahead, offset)
     distance = np.hypot(px - x, py - y)[row : row + window]
     nearest = row + int(np.argmin(distance))
     aim = min(nearest + ahead, 59)
