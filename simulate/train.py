@@ -35,7 +35,7 @@ _KEEP_FROM, _KEEP_EVERY = 0.6, 0.05  # of the planned samples: checkpoints among
 _CHOICE_SEED, _JUDGEMENT_SEED = 11, 12
 
 
-def tune_gains(seed: int, generations: int) -> np.ndarray:
+def tune_gains(seed: int, generations: int, threads: int) -> np.ndarray:
     """Feedback gains (32,) by CMA-ES: mean and worst reward of walking with no policy for up to 6 s."""
     n = _CANDIDATES * _REPEATS
     bodies = np.random.default_rng([seed, 1])
@@ -44,6 +44,7 @@ def tune_gains(seed: int, generations: int) -> np.ndarray:
         Difficulty(level=0.0),
         np.tile(GAIN_START, (n, 1)),
         timesteps=np.full(n, 0.003),
+        threads=threads,
         rng=np.random.default_rng(0),
     )
     start, scale = np.array(GAIN_START), np.array(GAIN_SCALE)
@@ -108,7 +109,7 @@ def train(out: Path, seed: int, samples: int, generations: int, threads: int) ->
     if gains_file.exists():
         gains = np.load(gains_file)
     else:
-        gains = tune_gains(seed, generations)
+        gains = tune_gains(seed, generations, threads)
         np.save(gains_file, gains)
     if checkpoint.exists():
         state = torch.load(checkpoint, weights_only=False)
@@ -192,7 +193,7 @@ def main() -> None:
     )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--samples", type=float, default=8e6, help="control steps to learn from")
-    parser.add_argument("--generations", type=int, default=200, help="of CMA-ES for the feedback gains")
+    parser.add_argument("--generations", type=int, default=160, help="of CMA-ES for the feedback gains")
     parser.add_argument("--threads", type=int, default=2, help="for the physics")
     arguments = parser.parse_args()
     train(arguments.out, arguments.seed, int(arguments.samples), arguments.generations, arguments.threads)
