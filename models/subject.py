@@ -133,6 +133,9 @@ class Subject:
         )
 
 
+# Soles by their softness: the contact's time constant (s). Lengths of the shoe do not differ.
+SHOES = {"stiff": 0.008, "walking": 0.012, "running": 0.017}
+
 # The paper's walks "were performed by two different subjects" (Borenstein et al. 2008, section 5).
 SUBJECTS = {
     "reference": Subject(),

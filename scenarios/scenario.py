@@ -14,7 +14,7 @@ from pydantic import Discriminator, Field, Tag
 from footfall.errors import InputError
 from footfall.models.body import MOUNTS
 from footfall.models.imu import TemperatureProfile, load_spec, stock_specs
-from footfall.models.subject import SUBJECTS, Subject
+from footfall.models.subject import SHOES, SUBJECTS, Subject
 from footfall.scenarios.path import Path, PathSpec, build_path
 from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height
 from footfall.simulate.journey import PHYSICS_STEP, Plan
@@ -28,7 +28,7 @@ Seed = Annotated[int, Field(ge=0)]
 
 
 class SubjectTable(Strict):
-    """A subject of the scenario's own; `Subject` says which bodies can walk."""
+    """A subject of the scenario's own; `Subject` says which bodies can walk. `shoe` is one of `SHOES`."""
 
     name: Annotated[str, Field(min_length=1)]
     height_m: float = Subject.height_m
@@ -38,7 +38,7 @@ class SubjectTable(Strict):
     toe_out_deg: float = Subject.toe_out_deg
     asymmetry: float = Subject.asymmetry
     friction: float = Subject.friction
-    sole_time_s: float = Subject.sole_time_s
+    shoe: str = "walking"
 
 
 # Told apart by hand, so that an error speaks of the one that was meant.
@@ -259,7 +259,9 @@ def _stops(tables: tuple[StopTable, ...], length: float) -> tuple[Stop, ...]:
 
 def _subject(i: int, entry: str | SubjectTable) -> Subject:
     if isinstance(entry, SubjectTable):
-        return Subject(**entry.model_dump())
+        if entry.shoe not in SHOES:
+            raise InputError(f"subjects.{i}.shoe = {entry.shoe!r}: expected one of {', '.join(SHOES)}")
+        return Subject(**entry.model_dump(exclude={"shoe"}), sole_time_s=SHOES[entry.shoe])
     if entry not in SUBJECTS:
         raise InputError(f"subjects.{i} = {entry!r}: expected one of {', '.join(SUBJECTS)}, or a table")
     return SUBJECTS[entry]
