@@ -74,9 +74,14 @@ def find(folder: Path) -> list[Real]:
     return found
 
 
-def rigid_rmse(ours: np.ndarray, theirs: np.ndarray) -> float:
-    """RMS distance (m) of (n, 2) points after the best rotation and shift: no scaling, no mirror."""
+def rigid_fit(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
+    """(n, 2) points turned and shifted so that they lie best on (n, 2) others: no scaling, no mirror."""
     a, b = ours @ [1, 1j], theirs @ [1, 1j]
-    a, b = a - a.mean(), b - b.mean()
-    turn = np.vdot(a, b)
-    return float(np.sqrt(np.mean(np.abs(a * turn / abs(turn) - b) ** 2)))
+    turn = np.vdot(a - a.mean(), b - b.mean())
+    fitted = (a - a.mean()) * turn / abs(turn) + b.mean()
+    return np.column_stack([fitted.real, fitted.imag])
+
+
+def rigid_rmse(ours: np.ndarray, theirs: np.ndarray) -> float:
+    """RMS distance (m) of (n, 2) points after the best rotation and shift."""
+    return float(np.sqrt(np.mean(np.sum((rigid_fit(ours, theirs) - theirs) ** 2, axis=1))))

@@ -256,10 +256,16 @@ def test_clipping_is_told_and_nothing_else_is_taken_for_it(foot, share, clipped)
     limit = share * np.abs(foot.gyro[:, 1]).max()
     gyro = foot.gyro.copy()
     gyro[:, 1] = np.clip(gyro[:, 1], -limit, limit)
-    _, findings = condition(block(foot, gyro=gyro), "csv")
+    found, findings = condition(block(foot, gyro=gyro), "csv")
     assert [name for name, _ in findings.clipped] == (["gyro_y"] if clipped else [])
+    np.testing.assert_array_equal(found.gyro[:, [0, 2]], foot.gyro[:, [0, 2]])
     if clipped:
         assert dict(findings.clipped)["gyro_y"] == np.count_nonzero(np.abs(gyro[:, 1]) == limit)
+        # The peaks come back at least half as well as they are lost.
+        lost, left = (np.abs(x[:, 1] - foot.gyro[:, 1]).sum() for x in (gyro, found.gyro))
+        assert left < lost / 2
+    else:
+        np.testing.assert_array_equal(found.gyro, foot.gyro)
 
 
 def test_rows_without_samples_are_left_out_but_a_lone_nan_is_refused(foot):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from footfall.errors import InputError
+from footfall.formats.clipping import clipped_runs, restored
 from footfall.formats.samples import Samples
 from footfall.recording import ACCEL, GYRO
 
@@ -16,8 +17,7 @@ JITTER = 0.1  # of an interval; stamps that scatter more are not evenly spaced
 MOST_OFF = 5.0  # intervals by which a stamp may lie off an even spacing
 DOUBLED = 0.9  # share of the rows with the stamp of the one before that must repeat it, or none is a double
 LARGEST = {"t": 1e19, "gyro": 1e10, "accel": 1e10}  # in any unit: beyond it arithmetic fails
-HELD_S = 0.003  # a clipped signal stays at its extreme at least so long, and three samples
-CLIPPED_MIN = np.repeat([np.radians(100.0), 15.0], 3)  # rad/s, m/s2; no sensor's range is less
+LEAST_RANGE = {"gyro": np.radians(100.0), "accel": 15.0}  # rad/s, m/s2; no sensor has less
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Findings:
     longest_gap_s : longest hole that was filled or left
     jitter_pct : scatter of the stamps' distances, % of an interval
     restamped : whether the stamps were replaced by evenly spaced ones
-    clipped : channel -> samples held at its extreme
+    clipped : channel -> samples held at its extreme; those of gyros were restored
     notes : what was wrong with the file itself
     """
 
@@ -65,7 +65,8 @@ class Findings:
         elif self.jitter_pct > 100 * JITTER:
             said.append(f"stamps jitter by {self.jitter_pct:.0f} % of an interval and were kept")
         for name, count in self.clipped:
-            said.append(f"{name} is clipped in {count} samples")
+            mended = ", which were restored" if name in GYRO else ""
+            said.append(f"{name} is clipped in {count} samples{mended}")
         return said
 
     def as_dict(self) -> dict[str, Any]:
@@ -79,7 +80,8 @@ def condition(samples: Samples, format: str, *, whole: bool = True) -> tuple[Sam
     Rows without any value are left out, and so are rows that repeat the one before with its stamp. Samples
     that share a stamp are spread to the next one. Stamps that scatter about an even spacing are replaced by
     it: samplers are regular, loggers are not. Holes up to `FILL_S` are filled by straight lines, longer ones
-    are left for dead reckoning to refuse. Clipped samples are counted.
+    are left for dead reckoning to refuse. Clipped samples are counted, and those of gyros restored
+    (`restored`); a shock that clips an accelerometer is too short for that.
 
     Parameters
     ----------
@@ -113,6 +115,7 @@ def condition(samples: Samples, format: str, *, whole: bool = True) -> tuple[Sam
         filled = len(samples) - before
     else:
         filled = 0
+    samples, clipped = _unclipped(samples, interval)
     return samples, Findings(
         format=format,
         rows=rows,
@@ -123,7 +126,7 @@ def condition(samples: Samples, format: str, *, whole: bool = True) -> tuple[Sam
         longest_gap_s=gap if gap > 1.5 * interval else 0.0,
         jitter_pct=100 * jitter,
         restamped=restamped,
-        clipped=clipped(samples, interval),
+        clipped=clipped,
     )
 
 
@@ -203,23 +206,17 @@ def _filled(samples: Samples, interval: float) -> Samples:
     )
 
 
-def clipped(samples: Samples, interval: float) -> tuple[tuple[str, int], ...]:
-    """Channels that are held at an extreme, and for how many samples.
-
-    A signal passes its extremes quickly; one that stays there, exactly, for `HELD_S` is at its sensor's
-    range.
-    """
-    least = max(3, int(np.ceil(HELD_S / interval)))
-    found = []
-    values = np.column_stack([samples.gyro, samples.accel])
-    for name, channel, floor in zip((*GYRO, *ACCEL), values.T, CLIPPED_MIN, strict=True):
-        count = 0
-        for extreme in (channel.min(), channel.max()):
-            if abs(extreme) < floor:
-                continue
-            edges = np.flatnonzero(np.diff(np.concatenate([[False], channel == extreme, [False]])))
-            held = np.diff(edges.reshape(-1, 2), axis=1)
-            count += int(held[held >= least].sum())
-        if count:
-            found.append((name, count))
-    return tuple(found)
+def _unclipped(samples: Samples, interval: float) -> tuple[Samples, tuple[tuple[str, int], ...]]:
+    gyro, found = samples.gyro, []
+    for axis in range(3):
+        runs = clipped_runs(samples.gyro[:, axis], interval, LEAST_RANGE["gyro"])
+        if len(runs):
+            if gyro is samples.gyro:
+                gyro = gyro.copy()
+            gyro[:, axis] = restored(samples.gyro[:, axis], runs)
+            found.append((GYRO[axis], int(np.diff(runs).sum())))
+    for axis in range(3):
+        runs = clipped_runs(samples.accel[:, axis], interval, LEAST_RANGE["accel"])
+        if len(runs):
+            found.append((ACCEL[axis], int(np.diff(runs).sum())))
+    return replace(samples, gyro=gyro), tuple(found)
