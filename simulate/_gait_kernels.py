@@ -12,8 +12,7 @@ from numba.extending import register_jitable
 
 from footfall.models import gait
 from footfall.simulate._elementwise import choose
-from footfall.simulate.state import ACTION_SCALE
-from footfall.simulate.variability import AMPLITUDE, CADENCE, TOE_OUT_LEFT, TOE_OUT_RIGHT, WIDTH
+from footfall.simulate.state import ACTION_SCALE, AMPLITUDE, CADENCE, TOE_OUT_LEFT, TOE_OUT_RIGHT, WIDTH
 
 _LEG_LENGTH = 0.9  # m, turns a step width into an adduction
 _WIDER = 0.03  # m by which each leg is set wider while stopping
@@ -115,12 +114,14 @@ def reference(s, ref, stagger, out):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def stride_all(state):  # type: ignore[no-untyped-def]
-    """`stride` of every walker; (n,) bool: who begins a step."""
-    new = np.empty(len(state), np.bool_)
+    """`stride` of every walker; (m,) which of them begin a step."""
+    rows, m = np.empty(len(state), np.intp), 0
     for i in range(len(state)):
         stride(state[i])
-        new[i] = np.floor(state[i].next_phase * 2) != np.floor(state[i].phase * 2)
-    return new
+        if np.floor(state[i].next_phase * 2) != np.floor(state[i].phase * 2):
+            rows[m] = i
+            m += 1
+    return rows[:m]
 
 
 @njit(cache=True, nogil=True)

@@ -18,6 +18,9 @@ N_SENSOR = body.SENSOR_TOUCH.stop  # what control reads; sensors of the IMU come
 # Residual (rad) for an action of 1.
 ACTION_SCALE = 3.3 * np.array([0.2, 0.2, 0.2] + [0.35, 0.25, 0.25, 0.35, 0.25, 0.15] * 2 + [0.2, 0.2])
 
+# Places in `varied`: cadence, hip excursion (both relative), step width (m), toe-out of each foot (rad).
+CADENCE, AMPLITUDE, WIDTH, TOE_OUT_RIGHT, TOE_OUT_LEFT = range(5)
+
 WALKER = np.dtype(
     [
         ("dt", float),  # s, control interval
@@ -43,8 +46,12 @@ WALKER = np.dtype(
         ("residual", float, body.N_SERVOS),  # feedback and policy as applied, in units of ACTION_SCALE
         ("next_residual", float, body.N_SERVOS),
         ("feedback", float, body.N_SERVOS),  # rad, for right stance
-        ("varied", float, 5),  # see variability.Variability
+        ("level", float),  # of variability
+        ("slow", float),  # part of the cadence
+        ("asymmetry", float),
+        ("varied", float, 5),
         ("varied_goal", float, 5),
+        ("varied_mean", float, 5),
         # standing
         ("gate", float),  # 0 stands, 1 walks
         ("gate_before", float),  # this control step

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -32,8 +33,7 @@ N_ACTION = body.N_SERVOS
 Ground = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-@dataclass(frozen=True)
-class Trace:
+class Trace(NamedTuple):
     """Every physics step of one control step: states after and sensors before each step, and the targets."""
 
     qpos: np.ndarray  # (n, k, 26)
@@ -231,11 +231,9 @@ class Walkers:
         if action.shape != (n, N_ACTION):
             raise ValueError(f"actions {action.shape}, expected ({n}, {N_ACTION})")
         act_all(state, self._gain_records, action)
-        new = stride_all(state)
-        if new.any():
-            rows = np.flatnonzero(new)
-            half = (np.floor(state["next_phase"][rows] * 2) % 2).astype(int)
-            self.variability.draw(rows, half, self.rng)
+        stepping = stride_all(state)
+        if len(stepping):
+            self.variability.draw(stepping, self.rng)
         target = targets_all(state, REFERENCE, k)
 
         nq, start = self.qpos.shape[1], start_all(state)

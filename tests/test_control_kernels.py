@@ -11,7 +11,14 @@ from footfall.conventions import GRAVITY
 from footfall.models.body import Ground, build_body
 from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import Build, Habits
-from footfall.simulate import _balance_kernels, _gait_kernels, _look_kernels, walkers
+from footfall.simulate import (
+    _balance_kernels,
+    _gait_kernels,
+    _look_kernels,
+    _variability_kernels,
+    variability,
+    walkers,
+)
 from footfall.simulate._gait_kernels import REFERENCE
 from footfall.simulate._steer_kernels import pursue
 from footfall.simulate.feedback import GAIN_SCALE, GAIN_START, gain_records
@@ -30,7 +37,13 @@ def plain_act(state: np.ndarray, gains: np.ndarray, action: np.ndarray) -> None:
 def plain_stride(state: np.ndarray) -> np.ndarray:
     before = np.floor(state["phase"] * 2)
     _gait_kernels.stride(Columns(state))
-    return np.floor(state["next_phase"] * 2) != before
+    return np.flatnonzero(np.floor(state["next_phase"] * 2) != before)
+
+
+def plain_draw(state: np.ndarray, rows: np.ndarray, normal: np.ndarray) -> None:
+    some = state[rows]
+    _variability_kernels.draw(Columns(some), normal.T)
+    state[rows] = some
 
 
 def plain_targets(state: np.ndarray, ref: np.ndarray, substeps: int) -> np.ndarray:
@@ -105,7 +118,12 @@ def test_a_control_step_is_its_twin(seed: int) -> None:
     _balance_kernels.act_all(compiled, gains, action)
     plain_act(plain, gains, action)
     assert_same(compiled, plain)
-    np.testing.assert_array_equal(_gait_kernels.stride_all(compiled), plain_stride(plain))
+    rows = _gait_kernels.stride_all(compiled)
+    np.testing.assert_array_equal(rows, plain_stride(plain))
+    normal = rng.standard_normal((len(rows), 5))
+    _variability_kernels.draw_all(compiled, rows, normal)
+    plain_draw(plain, rows, normal)
+    assert_same(compiled, plain)
     targets = _gait_kernels.targets_all(compiled, REFERENCE, 10)
     np.testing.assert_allclose(targets, plain_targets(plain, REFERENCE, 10), rtol=0, atol=1e-12)
     reference = _gait_kernels.reference_all(compiled, REFERENCE, 0.3)
@@ -182,6 +200,7 @@ def test_walks_are_those_of_the_twin(monkeypatch: pytest.MonkeyPatch) -> None:
         ("observe", plain_observe),
     ):
         monkeypatch.setattr(walkers, name, twin)
+    monkeypatch.setattr(variability, "draw_all", plain_draw)
     plain = people(5)
     for targets, qpos, seen, closing in walked:
         trace = plain.step(policy(plain.observe()))

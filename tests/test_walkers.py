@@ -16,10 +16,11 @@ from footfall.models.body import (
 from footfall.models.policy import load_policy, stock_policy
 from footfall.models.subject import Build, Habits
 from footfall.simulate._balance_kernels import Balance, feedback
+from footfall.simulate._variability_kernels import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD
 from footfall.simulate.feedback import GAIN_START, SERVO_MIRROR, SERVO_SIGN, Gains, gain_records
 from footfall.simulate.observation import MIRROR, N_OBSERVATION, SIGN
 from footfall.simulate.state import WALKER, Columns
-from footfall.simulate.variability import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD, Variability
+from footfall.simulate.variability import Variability
 from footfall.simulate.walkers import N_ACTION, Walkers
 
 
@@ -156,12 +157,14 @@ def test_variability_has_the_stated_spread() -> None:
     n = 4000
     everyone, rng = np.ones(n, dtype=bool), np.random.default_rng(1)
     habits = Habits(cadence=1.03, step_width=0.01, toe_out=0.1, asymmetry=0.0)
-    lively, still = Variability(np.zeros(n, WALKER)), Variability(np.zeros(n, WALKER))
+    state = np.zeros((2, n), WALKER)
+    lively, still = Variability(state[0]), Variability(state[1])
     lively.place(everyone, np.ones(n), [habits] * n)
     still.place(everyone, np.zeros(n), [habits] * n)
     for half in np.arange(40) % 2:
+        state["next_phase"] = half / 2
         for group in (lively, still):
-            group.draw(np.arange(n), np.full(n, half), rng)
+            group.draw(np.arange(n), rng)
     assert lively.target[:, 0].std() == pytest.approx(np.hypot(CADENCE_SD, CADENCE_SLOW_SD), rel=0.05)
     assert lively.target[:, 0].mean() == pytest.approx(0.03, abs=0.003)
     assert lively.target[:, 3].std() == pytest.approx(TOE_OUT_SD, rel=0.05)
@@ -169,11 +172,13 @@ def test_variability_has_the_stated_spread() -> None:
 
 
 def test_asymmetry_makes_one_step_quicker_than_the_other() -> None:
-    one = Variability(np.zeros(1, WALKER))
+    state = np.zeros(1, WALKER)
+    one = Variability(state)
     one.place(np.ones(1, dtype=bool), np.zeros(1), [Habits(asymmetry=0.02)])
     rng, cadence = np.random.default_rng(0), []
     for half in (0, 1):
-        one.draw(np.arange(1), np.array([half]), rng)
+        state["next_phase"] = half / 2
+        one.draw(np.arange(1), rng)
         cadence.append(one.target[0, 0])
     assert cadence == pytest.approx([0.02, -0.02])
 
