@@ -23,8 +23,8 @@ _COLOURS = {
     "hdr": "#1f6fb4",
     "hdr-basic": "#6a9f3a",
     "iez": "#c98a00",
-    "hde": "#7b4fa3",
-    "ihde": "#00806a",
+    "hde": "#6a9f3a",
+    "ihde": "#1f6fb4",
 }
 _MORE = ("#7b4fa3", "#c98a00", "#2a9d8f", "#8d5524", "#d16ba5", "#444f9b")
 _LABELS = {
@@ -126,11 +126,14 @@ def save(figure: Figure, path: Path) -> None:
 
 
 def colours_of(methods: Sequence[str]) -> dict[str, str]:
-    """A colour for each method, the same in every figure of a run."""
-    taken = {_COLOURS[method] for method in methods if method in _COLOURS}
-    free = [colour for colour in (*_MORE, *_COLOURS.values()) if colour not in taken]
-    more = [method for method in methods if method not in _COLOURS]
-    return _COLOURS | {method: free[i % len(free)] for i, method in enumerate(more)}
+    """A colour for each of up to ten methods, the same in every figure of a run; usual ones keep theirs."""
+    palette = list(dict.fromkeys((*_COLOURS.values(), *_MORE)))
+    found: dict[str, str] = {}
+    for method in sorted(methods, key=lambda name: name not in _COLOURS):
+        usual = _COLOURS.get(method)
+        left = [colour for colour in palette if colour not in found.values()] or palette
+        found[method] = usual if usual in left else left[0]
+    return found
 
 
 def label_of(method: str) -> str:
