@@ -252,11 +252,11 @@ def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | 
             weight = float(sum(moment.walkers.models[0].body_mass)) * GRAVITY
         if on_progress is not None and count % 100 == 0:
             on_progress(moment.progress)
-    record = np.column_stack([np.concatenate(poses), np.concatenate(touches).sum(axis=1)])
-    record = record[round(STAND_S / PHYSICS_STEP) :]
-    if not np.isfinite(record).all():
+    kept = slice(round(STAND_S / PHYSICS_STEP), None)
+    found, load = np.concatenate(poses)[kept], np.concatenate(touches)[kept].sum(axis=1)
+    if not (np.isfinite(found).all() and np.isfinite(load).all()):
         raise FallError(f"{plan.name}: the physics is no longer finite (seed {plan.seed})")
-    return _Record(record[:, :3] * plan.subject.scale, record[:, 3:7], record[:, 7] / weight)
+    return _Record(found[:, :3] * plan.subject.scale, found[:, 3:], load / weight)
 
 
 def _truth(record: _Record, factor: int) -> tuple[ImuTruth, np.ndarray, np.ndarray]:

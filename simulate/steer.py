@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from footfall.conventions import wrap
 from footfall.errors import InputError
 from footfall.simulate._steer_kernels import pursue
 from footfall.simulate.route import Route
@@ -114,7 +113,7 @@ class Pursuit:
         )
         if stray > STRAY_LIMIT:
             raise StrayError(f"the walker strayed {stray:.1f} m off its path at {self.progress:.0f} m")
-        bearing = float(wrap(math.atan2(aim_y - y, aim_x - x) - heading))
+        bearing = math.remainder(math.atan2(aim_y - y, aim_x - x) - heading, 2 * math.pi)
         turn = min(max(_BEARING_GAIN * bearing, -TURN_LIMIT), TURN_LIMIT)
         return self._speed(standing), turn
 

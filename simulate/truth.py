@@ -12,10 +12,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
+from footfall.simulate._truth_kernels import increments
 
 # The foot is at rest on the ground: it carries load while the IMU neither travels nor turns fast.
 REST_SPEED = 0.20  # m/s
@@ -77,11 +77,8 @@ def imu_truth(position: np.ndarray, quaternion: np.ndarray, physics_step: float,
     earlier = (position[index - low] + position[index - high]) / 2
     velocity = (later - earlier) / interval
 
-    attitude = Rotation.from_quat(quaternion[index], scalar_first=True)
-    turn = (attitude[:-1].inv() * attitude[1:]).as_rotvec()
     push = np.diff(velocity, axis=0) + np.array([0, 0, GRAVITY * interval])
-    middle = attitude[:-1] * Rotation.from_rotvec(turn / 2)
-    force = middle.inv().apply(push)
+    turn, force = increments(quaternion[index], push)
     return ImuTruth(
         index=index[1:],
         position=position[index[1:]],

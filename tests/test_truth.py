@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
 from footfall.pdr.strapdown import integrate
+from footfall.simulate._truth_kernels import increments
 from footfall.simulate.truth import at_rest, divisor, imu_truth, runs
 
 STEP = 0.001
@@ -103,3 +106,23 @@ def test_heading_is_unwrapped() -> None:
         scalar_first=True
     )
     np.testing.assert_allclose(heading_of(quaternion), yaw, atol=1e-12)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 1e-13, 1e-9, 1e-3, 0.5, 2.5]))
+def test_the_increments_are_their_twin(seed: int, turning: float) -> None:
+    """The compiled increments against scipy's rotations, from no turn at all to large ones."""
+    rng, n = np.random.default_rng(seed), 20
+    steps = Rotation.from_rotvec(turning * rng.normal(size=(n, 3)) / np.sqrt(3))
+    attitude = [Rotation.random(rng=rng)]
+    for step in steps:
+        attitude.append(attitude[-1] * step)
+    quaternion = np.array([one.as_quat(scalar_first=True) for one in attitude])
+    quaternion *= rng.choice([-1.0, 1.0], (n + 1, 1))  # both signs say the same attitude
+    push = rng.normal(size=(n, 3))
+    turn, force = increments(quaternion, push)
+    attitudes = Rotation.from_quat(quaternion, scalar_first=True)
+    expected = (attitudes[:-1].inv() * attitudes[1:]).as_rotvec()
+    middle = attitudes[:-1] * Rotation.from_rotvec(expected / 2)
+    np.testing.assert_allclose(turn, expected, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(force, middle.inv().apply(push), rtol=0, atol=1e-12)
