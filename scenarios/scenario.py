@@ -65,6 +65,13 @@ class StopTable(Strict):
     for_s: float = Field(gt=0, le=3600)
 
 
+class DisturbanceTable(Strict):
+    """Pushes at the trunk: how well does the walker stand them?"""
+
+    push_Ns: float = Field(gt=0, le=30)
+    every_s: float = Field(10.0, ge=1)
+
+
 class TemperatureTable(Strict):
     """The sensor warms up indoors and is carried out just before its calibration."""
 
@@ -103,6 +110,7 @@ class ScenarioFile(Strict):
     path: PathSpec
     gait: GaitTable
     stops: Annotated[tuple[StopTable, ...], Field(strict=False)] = ()
+    disturbance: DisturbanceTable | None = None
     temperature: TemperatureTable
     sensor: SensorTable
     seeds: SeedTable
@@ -124,6 +132,7 @@ class Scenario:
     pace : m/s, asked of the walker on straights
     variability : of the gait, 1 = that of people; action_noise : SD of the noise on the walker's actions
     wander, wander_time : m and s, slow lateral wander of the steering's aim
+    push, push_every : N s and s, pushes at the trunk; 0: none
     temperature : of the air around the sensor from the recording's start
     imu : stock name or path of a data sheet
     mount : name of a mounting on the shoe
@@ -144,6 +153,8 @@ class Scenario:
     action_noise: float
     wander: float
     wander_time: float
+    push: float
+    push_every: float
     temperature: TemperatureProfile
     imu: str
     mount: str
@@ -176,6 +187,8 @@ class Scenario:
             action_noise=self.action_noise,
             wander=self.wander,
             wander_time=self.wander_time,
+            push=self.push,
+            push_every=self.push_every,
             calibration=self.calibration,
             rate_hz=self.rate_hz,
             seed=self.seed + walk,
@@ -231,6 +244,8 @@ def _scenario(file: File, content: ScenarioFile) -> Scenario:
         action_noise=gait.action_noise,
         wander=gait.wander_m,
         wander_time=gait.wander_time_s,
+        push=content.disturbance.push_Ns if content.disturbance else 0.0,
+        push_every=content.disturbance.every_s if content.disturbance else Plan.push_every,
         temperature=TemperatureProfile.step(
             content.temperature.indoors_degC, content.temperature.outdoors_degC
         ),

@@ -20,6 +20,7 @@ from footfall.models import body
 from footfall.models.body import Ground, Mount, build_body
 from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import Subject
+from footfall.simulate.disturbance import Push, Pusher, pushes
 from footfall.simulate.ground import ground_lookup
 from footfall.simulate.route import Route
 from footfall.simulate.steer import Pursuit, Stop
@@ -55,6 +56,8 @@ class Plan:
     variability : of the gait, 1 = that of people; action_noise : SD of the noise on the policy's action
     wander, wander_time : m and s, slow lateral wander of the aim
     calibration : s of standing before the first step
+    push, push_every : N s and s; pushes at the trunk into random directions from the first step on: the only
+        external force there can be, off by default
     rate_hz : of the truth; divides 1 kHz
     """
 
@@ -70,6 +73,8 @@ class Plan:
     wander: float = 0.0
     wander_time: float = 4.0
     calibration: float = 30.0
+    push: float = 0.0
+    push_every: float = 10.0
     rate_hz: float = 200.0
     seed: int = 1
 
@@ -217,7 +222,10 @@ def stroll(plan: Plan, policy: Policy, *, stand: float | None = None) -> Iterato
     noise, at = stream(plan.seed, "action noise"), 0.0
     stand = STAND_S + plan.calibration if stand is None else stand
     outing = Outing(plan, policy.feedback_gains, stand=stand)
-    walkers = outing.walkers
+    walkers, interval = outing.walkers, SUBSTEPS * PHYSICS_STEP
+    # The simulated body weighs something else, and its speeds are the subject's over `time_scale`.
+    share = float(sum(walkers.models[0].body_mass)) / plan.subject.mass_kg
+    pusher = Pusher(planned_pushes(plan, outing.limit * interval), start=STAND_S)
     try:
         for count in range(outing.limit):
             if outing.finished:
@@ -225,7 +233,7 @@ def stroll(plan: Plan, policy: Policy, *, stand: float | None = None) -> Iterato
             action, at = policy(walkers.observe()), outing.progress
             if plan.action_noise:
                 action = action + plan.action_noise * noise.standard_normal((1, N_ACTION))
-            trace = walkers.step(action)
+            trace = walkers.step(action, pusher.force(count * interval, share))
             if walkers.fallen()[0]:
                 raise FallError(
                     f"{plan.name}: the walker fell at {at:.0f} m ({count * SUBSTEPS * PHYSICS_STEP:.0f} s, "
@@ -264,6 +272,18 @@ def _truth(record: _Record, factor: int) -> tuple[ImuTruth, np.ndarray, np.ndarr
     truth = imu_truth(record.position, record.quaternion, PHYSICS_STEP, factor)
     contact = record.contact[truth.index]
     return truth, contact, runs(at_rest(truth, contact, factor * PHYSICS_STEP))
+
+
+def planned_pushes(plan: Plan, until: float) -> tuple[Push, ...]:
+    """The pushes of a plan in the first `until` seconds of its record, from the first step on."""
+    rng = stream(plan.seed, "pushes")
+    return pushes(plan.push, plan.push_every, first=plan.calibration, until=until, rng=rng)
+
+
+def _told_pushes(plan: Plan, until: float) -> dict[str, list[list[float]]]:
+    """A disturbed walk says so: time (s) and impulse (N s along x, y) of each push."""
+    given = [[push.t, *push.impulse] for push in planned_pushes(plan, until)]
+    return {"pushes_s_Ns_Ns": given} if given else {}
 
 
 def walk(
@@ -314,6 +334,7 @@ def walk(
             "rate_hz": plan.rate_hz,
             "calibration_s": plan.calibration,
             "policy": policy.digest,
+            **_told_pushes(plan, t[-1]),
             "versions": versions(),
         },
     )

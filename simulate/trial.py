@@ -154,7 +154,7 @@ def attempt(
             walkers.speed_goal[i], walkers.turn_goal[i] = speed, turn
         walkers.step(policy(walkers.observe()))
         over |= walkers.fallen()
-        for i in np.flatnonzero(over):
+        for i in np.flatnonzero(over).tolist():
             falls[todo[i].name] += 1
         arrived = np.array([pursuit.progress >= routes[i].length - 0.5 for i, pursuit in enumerate(pursuits)])
         if (over | arrived).any():

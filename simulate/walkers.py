@@ -91,6 +91,7 @@ class Walkers:
         self._n_sensor = models[0].nsensordata
         self._data = [mujoco.MjData(models[0]) for _ in range(max(1, threads))]
         self._rollout = rollout.Rollout(nthread=threads)
+        self._trunk = models[0].body("torso").id
         self._gait_height = np.array([gait_heights(model) for model in _distinct(models)])
         self._standing_height = np.array([standing_height(model) for model in models])
 
@@ -214,12 +215,13 @@ class Walkers:
         """(n, N_OBSERVATION) float32, mirrored to right stance."""
         return observe(self._state)
 
-    def step(self, action: np.ndarray) -> Trace:
+    def step(self, action: np.ndarray, push: np.ndarray | None = None) -> Trace:
         """Advance every walker by its control interval `dt`.
 
         Parameters
         ----------
         action : (n, 17) in [-1, 1], mirrored as the observation was
+        push : (n, 3) N, a force on the trunk during this interval; None, as nearly always: no external force
 
         Raises
         ------
@@ -238,12 +240,19 @@ class Walkers:
 
         nq, start = self.qpos.shape[1], start_all(state)
         after, sensor = np.empty((n, k, start.shape[1])), np.empty((n, k, self._n_sensor))
+        control, spec = target, mujoco.mjtState.mjSTATE_CTRL
+        if push is not None:
+            force = np.zeros((n, k, self.models[0].nbody, 6))
+            force[:, :, self._trunk, :3] = push[:, None]
+            control = np.concatenate([target, force.reshape(n, k, -1)], axis=2)
+            spec = spec | mujoco.mjtState.mjSTATE_XFRC_APPLIED
         # The shapes are right by construction: unchecked, a call costs 50 us less.
         self._rollout.rollout(
             self.models,
             self._data,
             start,
-            target,
+            control,
+            control_spec=spec,
             skip_checks=True,
             nstep=k,
             state=after,
