@@ -1,9 +1,9 @@
 """Real feet: every detector and method on every recording, with one set of defaults.
 
-Return error: horizontal distance from the last footfall to the first, for the foot ended where it began. Where
-footprints were measured (gdin): their RMS distance from the track after the best rotation and shift, each from
-the footfall nearest in time. Strides: found less true (the recorder's count, or one a footprint; of openshoe 44
-and xio nobody counted: there it is the count of the default).
+Return error: horizontal distance from the last footfall to the first, for the foot ended where it began.
+Where footprints were measured (gdin): their RMS distance from the track after the best rotation and shift,
+each from the footfall nearest in time. Strides: found less true (the recorder's count, or one a footprint;
+nobody counted those of openshoe 44 and xio: there it is the count of the default).
 
 Then the same feet with the drift of other IMUs on top (`footfall record --from-recording`): by how much the
 heading at the end then differs from that of undisturbed dead reckoning.

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from commands import write_csv
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
 from synthetic_foot import walk
@@ -329,6 +329,7 @@ def test_what_no_foot_can_measure_is_refused_with_its_cause(foot, tmp_path, chan
     assert str(caught.value).startswith(f"{file}: ")
 
 
+@settings(max_examples=30)
 @given(angles=st.tuples(*[st.floats(-np.pi, np.pi)] * 3), error=st.floats(-0.05, 0.05))
 def test_a_right_recording_passes_however_it_is_mounted(tmp_path_factory, foot, angles, error):
     from scipy.spatial.transform import Rotation

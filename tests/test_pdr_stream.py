@@ -40,6 +40,7 @@ def blocks(recording, edges):
             yield Recording(recording.t[part], recording.gyro[part], recording.accel[part])
 
 
+@settings(max_examples=40)
 @given(
     edges=st.lists(st.integers(2, 9000), max_size=30).map(lambda x: sorted({edge - edge % 2 for edge in x})),
     work=st.sampled_from([100, 1000, 3000]),
