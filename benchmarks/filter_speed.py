@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from _common import options, out, write_json
@@ -111,11 +111,11 @@ def gaitmap(recording: Recording) -> Callable[[], object]:
     return lambda: RtsKalman().estimate(data, sampling_rate_hz=float(RATE))
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Time them, print the table."""
     parser = options(__doc__, processes=False)
     parser.add_argument("--minutes", type=float, default=20.0, help="of walking (default 20)")
-    chosen = parser.parse_args()
+    chosen = parser.parse_args(arguments)
     recording = stepping(chosen.minutes)
     found = detect(recording, PdrParams())
     n = len(recording.t) - found.rest.last - 1

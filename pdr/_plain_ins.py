@@ -117,16 +117,20 @@ class PlainFilter:
         self.covariance = left @ p @ left.T + gain @ r @ gain.T
         return error + gain @ (z - h @ error)
 
-    def _with_known_turn(self) -> np.ndarray:
-        """Covariance if heading and the gyro's errors about the vertical were known."""
+    def _known_rows(self) -> np.ndarray:
+        """What zero velocity must not touch: heading, and the gyro's errors about the vertical."""
         up = self.attitude[2]
         rows = np.zeros((5 if self.settings.g_sensitivity else 2, self.settings.states))
         rows[0, HEADING] = 1.0
         rows[1, GYRO_BIAS] = up
         if self.settings.g_sensitivity:
             rows[2:, G_SENSITIVITY] = np.kron(up, np.eye(3))
+        return rows
+
+    def _with_known_turn(self) -> np.ndarray:
+        """Covariance if they were known."""
         p = self.covariance
-        live = [row for row in rows if row @ p @ row > 0]
+        live = [row for row in self._known_rows() if row @ p @ row > 0]
         if not live:
             return p
         s = np.array(live)

@@ -71,6 +71,22 @@ def test_an_update_at_every_sample_turns_and_one_a_stance_does_not(bend):
     assert np.abs(heading_error(cured, bend)).max() < 1e-2 * np.abs(heading_error(paper, bend)).max()
 
 
+def test_a_heading_that_nobody_knows_spoils_no_stride(bend):
+    """A drift of 0.5 deg/s and a heading known to nothing: the strides stay as long as they are."""
+    recording = bend.recording(gyro_error=drift(bend, [0.3, -0.3, 0.5]))
+    settings = FilterSettings(gyro_bias_sd=np.radians(1.0), heading_sd=1.0)
+    found = run_filter(recording, settings)
+    assert found.heading_sd[-1] > 0.5
+    truth = np.diff(bend.position[bend.at(found.footfalls.t)], axis=0)
+    length = np.hypot(*truth[:, :2].T)
+    np.testing.assert_allclose(found.footfalls.distance[1:].sum(), length.sum(), rtol=5e-3)
+    assert np.abs(found.footfalls.position[:, 2]).max() < 0.3
+    # Let to explain velocities by turning, the filter does worse.
+    turning = run_filter(recording, FilterSettings(**{**vars(settings), "velocity_turns": True})).footfalls
+    ours = np.abs(found.footfalls.distance[1:] - length).max()
+    assert np.abs(turning.distance[1:] - length).max() > 2 * ours
+
+
 def test_a_frozen_bias_stays_what_the_start_said(bend):
     bias = np.radians([0.1, -0.2, 0.3])
     recording = bend.recording(gyro_error=bias, angle_random_walk=1e-4)
