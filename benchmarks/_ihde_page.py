@@ -51,9 +51,12 @@ def setting_table(settings: Mapping[str, tuple[str, str]]) -> str:
     return _markdown(["", "chosen on the tuning walks", "default"], rows)
 
 
-def scatter_table(found: Sequence[Scattered], gaits: Sequence[str], tests: Sequence[str]) -> str:
-    """Return errors against how much the stance yaw scatters."""
+def scatter_table(
+    found: Sequence[Scattered], gaits: Sequence[str], tests: Sequence[str], thresholds: Sequence[float]
+) -> str:
+    """Return errors against how much the stance yaw scatters, each gait with its best threshold (deg)."""
     head = ["gait", "stance yaw SD (deg)", "foot beside the path, standing / walking (deg)"]
+    head += ["a / k1 (deg), IHDE / no mean heading"]
     for test in tests:
         head += [f"{test}: IEZ", "IHDE", "no mean heading"]
     rows = []
@@ -64,16 +67,20 @@ def scatter_table(found: Sequence[Scattered], gaits: Sequence[str], tests: Seque
         yaw, standing, walking = np.mean(
             [(one.yaw_sd_deg, one.standing_deg, one.walking_deg) for one in mine], axis=0
         )
+        heading = np.mean([np.array(one.errors)[:, 1] for one in mine], axis=0)
+        half = len(thresholds)
+        best = [int(np.argmin(heading[first : first + half])) for first in (1, 1 + half)]
+        places = [0, 1 + best[0], 1 + half + best[1]]
         row = [gait, f"{yaw:.1f}", f"{standing:.1f} / {walking:.1f}"]
+        row.append(" / ".join(f"{thresholds[i]:g}" for i in best))
         for test in tests:
             errors = np.array([one.errors for one in mine if one.test == test])
-            row += [_number(value) for value in np.median(errors, axis=0)] if len(errors) else ["", "", ""]
+            row += [_number(np.median(errors[:, i, 0])) for i in places] if len(errors) else [""] * 3
         rows.append(row)
-    best = ["the paper's", "", ""]
+    paper = ["the paper's", "", "", ""]
     for test in tests:
-        paper = IHDE_TABLE_2[test]
-        best += [range_text(paper["iez"]), range_text(paper["ihde"]), ""]
-    return _markdown(head, [*rows, best])
+        paper += [range_text(IHDE_TABLE_2[test]["iez"]), range_text(IHDE_TABLE_2[test]["ihde"]), ""]
+    return _markdown(head, [*rows, paper])
 
 
 def fill(page: Path, tables: Mapping[str, str]) -> None:
