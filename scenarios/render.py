@@ -102,10 +102,9 @@ def view(plan: Plan) -> None:
 
 def _scenes(plan: Plan) -> Iterator[tuple[Stage, float]]:
     """The walk as it is drawn, step by step, and s since the first step (0 while it stands)."""
-    stage, strode, route = None, 0.0, plan.route
-    line = np.column_stack([route.x, route.y, route.z]) / plan.subject.scale
+    stage, strode = None, 0.0
     for moment in stroll(plan, stock_policy(), stand=_STAND_S):
-        stage = stage or Stage(moment.walkers, line)
+        stage = stage or Stage(moment.walkers, moment.outing)
         stage.look()
         strode += CONTROL_INTERVAL * bool(moment.walkers.gate.value[0] > 0)
         yield stage, strode

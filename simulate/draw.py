@@ -19,6 +19,9 @@ import numpy as np
 
 from footfall.errors import InputError
 from footfall.models import body
+from footfall.models.body import Ground, build_body
+from footfall.simulate.journey import Outing
+from footfall.simulate.route import Route
 from footfall.simulate.walkers import CONTROL_INTERVAL, Walkers
 
 # (azimuth from the walker's heading in degrees, elevation in degrees, distance in m)
@@ -34,6 +37,7 @@ _DASH_EVERY, _DASH_NEAR = 0.5, 12.0  # m
 _DASH_RGBA = (0.93, 0.60, 0.12, 1.0)
 _PRINT_RGBA = (0.36, 0.36, 0.36, 1.0)
 _FOOTFALL_RGBA = (0.10, 0.36, 0.66, 1.0)  # of the foot that wears the IMU
+_PATCH_M, _PATCH_CELL_M = 80.0, 1.0  # of the ground is drawn, each way; on a grid of at least this
 _ABOVE = 0.006  # m by which what lies on the ground is lifted from it
 
 
@@ -43,17 +47,32 @@ class Stage:
     Parameters
     ----------
     walkers : the first of them is drawn
-    line : (n, 3) m, to follow; or None
+    outing : that it is on, with a route to show and the ground; or None
+
+    Attributes
+    ----------
+    model, data : MuJoCo's, for drawing alone
+    moves : how often the part of the ground that is drawn has moved
     """
 
-    def __init__(self, walkers: Walkers, line: np.ndarray | None = None) -> None:
-        # A copy: who draws may change how it looks, and a viewer's user anything.
-        self.model = model = copy.copy(walkers.models[0])
+    def __init__(self, walkers: Walkers, outing: Outing | None = None) -> None:
+        plan = None if outing is None else outing.plan
+        self.walkers, self.moves = walkers, 0
+        self._ground = None if plan is None else plan.ground
+        if plan is None or self._ground is None:
+            # A copy: who draws may change how it looks, and a viewer's user anything.
+            self.model = copy.copy(walkers.models[0])
+        else:
+            patch = _patch(self._ground, walkers.qpos[0])
+            step = walkers.models[0].opt.timestep
+            self.model = build_body(plan.subject.build, timestep=step, mount=plan.mount, ground=patch)
+            self._move_ground()
+        model = self.model
         # Clipping and shadows to the walker's scale, not to that of a landscape of a kilometre.
         model.stat.extent, model.stat.center[:] = 2.0, 0.0
+        model.vis.map.shadowclip = 12
         self.data = mujoco.MjData(model)
-        self.walkers = walkers
-        self._dashes = None if line is None else _dashes(line)
+        self._dashes = None if plan is None else _dashes(plan.route)
         self._prints: deque[tuple[str, np.ndarray, np.ndarray]] = deque(maxlen=_PRINTS)
         imu = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, "imu")
         self._instrumented = "" if imu < 0 else model.body(model.site_bodyid[imu]).name[-1]
@@ -61,6 +80,10 @@ class Stage:
 
     def look(self) -> None:
         """Take the walker's present pose and remember its prints: once a control step."""
+        if self._ground is not None:
+            middle = self.model.geom("ground").pos
+            if np.abs(self.walkers.qpos[0, :2] - middle[:2]).max() > _PATCH_M / 4:
+                self._move_ground()
         self.data.qpos[:] = self.walkers.qpos[0]
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
@@ -73,6 +96,17 @@ class Stage:
             last = next((place for foot, _, place in reversed(self._prints) if foot == side), None)
             if last is None or np.linalg.norm(ball - last) > _PRINT_SPACING:
                 self._prints.append((side, heel, ball))
+
+    def _move_ground(self) -> None:
+        """Draw the part of the ground round the walker: the whole of it would take seconds a picture."""
+        assert self._ground is not None
+        patch = _patch(self._ground, self.walkers.qpos[0])
+        low, high = float(self._ground.heights.min()), float(self._ground.heights.max())
+        half = (np.array(patch.heights.shape[::-1]) - 1) * patch.cell / 2
+        self.model.hfield_data[:] = ((patch.heights - low) / (high - low)).ravel()
+        self.model.hfield_size[0, 2] = high - low
+        self.model.geom("ground").pos = patch.x0 + half[0], patch.y0 + half[1], low
+        self.moves += 1
 
     def _sole(self, foot: str, x: float) -> np.ndarray:
         """(3,) m, a point of the sole, x m before the ankle."""
@@ -111,11 +145,24 @@ class Stage:
             _add(scene, round_, (0.052, 0.034, 0.002), heel, psi, rise, rgba)
 
 
-def _dashes(line: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Middles (m, 3), headings and rises (m,) of dashes along a line of (n, 3) points."""
-    s = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
-    at = np.arange(0.0, s[-1], _DASH_EVERY)
-    points = np.stack([[np.interp(at + d, s, column) for column in line.T] for d in (-0.1, 0.1)])
+def _patch(ground: Ground, at: np.ndarray) -> Ground:
+    """The ground round a place (m), coarser; as large wherever that is: beyond its edge it goes on level."""
+    every = max(1, round(_PATCH_CELL_M / ground.cell))
+    cell, count = every * ground.cell, round(_PATCH_M / (every * ground.cell))
+    rows, columns = ground.heights.shape
+    middle = np.round((at[:2] - [ground.x0, ground.y0]) / ground.cell).astype(int)
+    column, row = middle - every * (count // 2)
+    steps = every * np.arange(count + 1)
+    j, i = np.clip(row + steps, 0, rows - 1), np.clip(column + steps, 0, columns - 1)
+    x0, y0 = ground.x0 + column * ground.cell, ground.y0 + row * ground.cell
+    return Ground(x0, y0, cell, ground.heights[np.ix_(j, i)])
+
+
+def _dashes(route: Route) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Middles (m, 3), headings and rises (m,) of dashes along a route."""
+    at = np.arange(0.0, route.length, _DASH_EVERY)
+    columns = (route.x, route.y, route.z)
+    points = np.stack([[np.interp(at + d, route.s, column) for column in columns] for d in (-0.1, 0.1)])
     step = (points[1] - points[0]).T  # (m, 3)
     length = np.maximum(np.hypot(step[:, 0], step[:, 1]), 1e-6)
     middle = points.mean(axis=0).T
@@ -155,7 +202,7 @@ class Painter:
     """
 
     def __init__(self, stage: Stage, width: int, height: int) -> None:
-        self.stage = stage
+        self.stage, self._moves = stage, stage.moves
         self._rect = mujoco.MjrRect(0, 0, width, height)
         whole = stage.model.vis.global_
         whole.offwidth, whole.offheight = max(width, whole.offwidth), max(height, whole.offheight)
@@ -175,6 +222,9 @@ class Painter:
         """(height, width, 3) uint8."""
         stage, rect = self.stage, self._rect
         self._gl.make_current()
+        if self._moves != stage.moves:
+            mujoco.mjr_uploadHField(stage.model, self._context, 0)
+            self._moves = stage.moves
         everything = mujoco.mjtCatBit.mjCAT_ALL.value
         option, camera = mujoco.MjvOption(), stage.camera(view)
         mujoco.mjv_updateScene(stage.model, stage.data, option, None, camera, everything, self._scene)
@@ -221,6 +271,7 @@ class Window:
         import mujoco.viewer
 
         self.stage, self._interval, self._due = stage, interval, time.monotonic()
+        self._moves = stage.moves
         others = set(threading.enumerate())
         self._viewer = mujoco.viewer.launch_passive(
             stage.model, stage.data, show_left_ui=False, show_right_ui=False
@@ -244,6 +295,9 @@ class Window:
             self.stage.look()
             self._viewer.user_scn.ngeom = 0
             self.stage.decorate(self._viewer.user_scn)
+        if self._moves != self.stage.moves:
+            self._viewer.update_hfield(0)
+            self._moves = self.stage.moves
         self._viewer.sync()
         self._due += self._interval
         # Late by more than a blink (a slow machine, a debugger): do not race to catch up.

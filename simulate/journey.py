@@ -127,6 +127,7 @@ class Moment:
     walkers: Walkers
     trace: Trace
     progress: float
+    outing: Outing
 
 
 class Outing:
@@ -141,7 +142,7 @@ class Outing:
 
     Attributes
     ----------
-    walkers : of one, in its own units; route : what it follows, in the same
+    plan : in the units of the walker; walkers : of one, in the same
     limit : control steps within which anything but a walker that is stuck has finished
     """
 
@@ -149,7 +150,7 @@ class Outing:
         subject, small = plan.subject, _shrunk(plan)
         route, step = small.route, PHYSICS_STEP / subject.time_scale
         model = build_body(subject.build, timestep=step, mount=plan.mount, ground=small.ground)
-        self.route, self._scale = route, subject.scale
+        self.plan, self._scale = small, subject.scale
         self.walkers = Walkers(
             [model],
             gains,
@@ -239,7 +240,7 @@ def stroll(plan: Plan, policy: Policy, *, stand: float | None = None) -> Iterato
                     f"{plan.name}: the walker fell at {at:.0f} m ({count * SUBSTEPS * PHYSICS_STEP:.0f} s, "
                     f"subject {plan.subject.name}, seed {plan.seed}, pace {plan.pace:g} m/s)"
                 )
-            yield Moment(walkers, trace, at)
+            yield Moment(walkers, trace, at, outing)
             outing.steer()
         raise FallError(f"{plan.name}: the walker got stuck at {at:.0f} m (seed {plan.seed})")
     finally:

@@ -204,7 +204,7 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
         if self.render_mode is None or course is None:
             return
         if self._stage is None:
-            self._stage = Stage(course.walkers, course.line)
+            self._stage = Stage(course.walkers, course.outing)
         elif restart:
             self._stage.restart()
         if self.render_mode == "rgb_array":
@@ -235,7 +235,7 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
 class _Commands:
     """Random commands on ground that slopes at random (gravity is tilted)."""
 
-    arrived, strayed, progress, line = False, False, 0.0, None
+    arrived, strayed, progress, outing = False, False, 0.0, None
 
     def __init__(self, subject: Subject | None, difficulty: Difficulty, gains: np.ndarray) -> None:
         self.subject = subject
@@ -265,27 +265,25 @@ class _Path:
     """A plan's route on its ground."""
 
     def __init__(self, plan: Plan, gains: np.ndarray) -> None:
-        self._outing = Outing(plan, gains, stand=_STAND_S)
-        route = self._outing.route
-        self.walkers, self.scale = self._outing.walkers, plan.subject.scale
-        self.line = np.column_stack([route.x, route.y, route.z])
+        self.outing = Outing(plan, gains, stand=_STAND_S)
+        self.walkers, self.scale = self.outing.walkers, plan.subject.scale
         self.strayed = False
 
     @property
     def progress(self) -> float:
         """Along the route (m)."""
-        return self._outing.progress
+        return self.outing.progress
 
     @property
     def arrived(self) -> bool:
         """Has walked the route and stood at its end."""
-        return self._outing.finished
+        return self.outing.finished
 
     def step(self, action: np.ndarray) -> dict[str, np.ndarray]:
         """One control step; terms of its reward."""
         terms, _ = rewarded_step(self.walkers, action)
         try:
-            self._outing.steer()
+            self.outing.steer()
         except StrayError:
             self.strayed = True
         return terms

@@ -116,8 +116,9 @@ def ground_marks(stage: Stage) -> dict[str, np.ndarray]:
 
 def test_feet_that_stand_leave_prints_under_them_on_the_path(short_plan: Plan) -> None:
     outing = Outing(short_plan, stock_policy().feedback_gains, stand=5.0)
-    line = np.column_stack([outing.route.x, outing.route.y, outing.route.z])
-    stage = Stage(outing.walkers, line)
+    route = outing.plan.route
+    line = np.column_stack([route.x, route.y])
+    stage = Stage(outing.walkers, outing)
     assert len(ground_marks(stage)["print"]) == 0  # it has not touched the ground yet
     for _ in range(30):
         outing.walkers.step(STILL[None])
@@ -127,7 +128,7 @@ def test_feet_that_stand_leave_prints_under_them_on_the_path(short_plan: Plan) -
     assert marks["print"].shape == (4, 3)  # two feet, heel and ball; still feet leave no more
     assert np.abs(marks["print"][:, 2]).max() < 0.02
     assert sorted(np.sign(marks["print"][:, 1])) == [-1, -1, 1, 1]
-    off = [np.linalg.norm(line[:, :2] - dash[:2], axis=1).min() for dash in marks["dash"]]
+    off = [np.linalg.norm(line - dash[:2], axis=1).min() for dash in marks["dash"]]
     assert len(off) > 10
     assert max(off) < 0.1
     stage.restart()
