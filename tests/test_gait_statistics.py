@@ -95,9 +95,9 @@ def test_a_foot_is_the_same_however_the_sensor_sits_on_it(scripts, motion, foot,
 def test_the_foots_axes_are_up_left_and_forward(scripts, motion, foot):
     """Flat on the ground the force is g along z; push-off turns the toes down, about y to the left."""
     middle = [stride.last for stride in foot.strides]
-    assert np.abs(foot.signals.accel[middle] - [0, 0, GRAVITY]).max() < 1.0
+    assert np.abs(np.median(foot.signals.accel[middle], axis=0) - [0, 0, GRAVITY]).max() < 0.5
     for stride in foot.strides:
-        assert foot.signals.gyro[stride.push, 1] > 5 > -5 > foot.signals.gyro[stride.swing, 1]
+        assert foot.signals.gyro[stride.push, 1] > 4 > -4 > foot.signals.gyro[stride.swing, 1]
         assert stride.step[0] > 1.0 > abs(stride.step[1])
 
 
