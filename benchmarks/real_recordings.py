@@ -8,25 +8,27 @@ nobody counted those of openshoe 44 and xio: there it is the count of the defaul
 Then the same feet with the drift of other IMUs on top (`footfall record --from-recording`): by how much the
 heading at the end then differs from that of undisturbed dead reckoning.
 
-python benchmarks/real_recordings.py --figure docs/images/real_tracks.png
+python benchmarks/real_recordings.py --page docs/real_recordings.md --figure docs/images/real_tracks.png
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from _common import out, write_json
 from _real import BESIDE, Real, find, rigid_fit
+from _real_page import Sheet, fill, out
 from rich.progress import track as progress
-from rich.table import Table
 
+from footfall import __version__
 from footfall.errors import InputError
 from footfall.formats.condition import condition
+from footfall.formats.physics import CHANGES, misclosure, rests_of
 from footfall.formats.samples import Samples
 from footfall.hdr.methods import METHODS, Reckoning
 from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
@@ -34,6 +36,7 @@ from footfall.pdr.detectors import DETECTORS
 from footfall.pdr.pdr import PdrParams
 from footfall.pdr.rest import still_time
 from footfall.pdr.track import Track
+from footfall.recording import Recording
 from footfall.simulate.from_recording import add_errors
 
 STRIDES = {"openshoe 31": 50, "openshoe 44": 44, "xio long": 37, "xio short": 16}
@@ -119,58 +122,55 @@ def cell(one: Judged) -> str:
     return f"{one.error_m:.2f}" + (f" ({one.unmatched} lost)" if one.unmatched else "")
 
 
-def table(title: str, names: Sequence[str], rows: Mapping[str, Sequence[Judged]], label: str) -> None:
-    """One row a method or detector, one column a recording: m."""
-    made = Table(title=title, title_justify="left")
-    made.add_column(label)
-    for name in names:
-        made.add_column(name, justify="right")
-    for name, found in rows.items():
-        made.add_row(name, *(cell(one) for one in found))
-    out.print(made)
-
-
-def report(reals: Sequence[Real], found: Sequence[Judged]) -> None:
-    """Tables: recordings, methods with the default detector, detectors with `pdr` and `iez`."""
+def sheets(reals: Sequence[Real], found: Sequence[Judged]) -> list[Sheet]:
+    """Recordings; methods with the default detector; detectors with `pdr` and `iez`; strides; targets."""
     names = [real.name for real in reals]
-    made = Table(title="Recordings and what their files suffer from", title_justify="left")
-    for heading in ("recording", "format", "Hz", "s", "rests s", "strides", "m", "flaws"):
-        made.add_column(heading)
+    starred = [name + (" *" if name in TUNED_ON else "") for name in names]
     by = {(one.recording, one.detector, one.method): one for one in found}
+    flaws = Sheet(
+        "recordings",
+        "Recordings and what their files suffer from",
+        ["recording", "format", "Hz", "s", "rests s", "strides", "m", "flaws"],
+    )
+    targets = Sheet(
+        "targets", "Targets, with the defaults (pdr, threshold)", ["recording", "reached", "target"]
+    )
     for real in reals:
         one, t = by[real.name, "threshold", "pdr"], real.recording.t
+        figures = [f"{real.findings.rate_hz:.1f}", f"{t[-1]:.0f}", f"{still_time(real.recording):g}"]
+        figures += [str(one.strides), f"{one.distance_m:.1f}"]
         told = "; ".join(real.findings.sentences()) or "none"
-        rests = f"{still_time(real.recording):g}"
-        rate, length = f"{real.findings.rate_hz:.1f}", f"{t[-1]:.0f}"
-        walked = f"{one.distance_m:.1f}"
-        made.add_row(real.name, real.findings.format, rate, length, rests, str(one.strides), walked, told)
-    out.print(made)
-    unit = "return error, m (gdin: RMSE to the footprints, m)"
-    rows = {name: [by[real, "threshold", name] for real in names] for name in METHODS}
-    table(f"Methods, detector threshold: {unit}", names, rows, "method")
-    for method in ("pdr", "iez"):
-        rows = {name: [by[real, name, method] for real in names] for name in DETECTORS}
-        table(f"Detectors, method {method}: {unit}", names, rows, "detector")
-    made = Table(title="Strides found less true, method pdr", title_justify="left")
-    made.add_column("detector")
-    for name in names:
-        made.add_column(name + (" *" if name in TUNED_ON else ""), justify="right")
-    for name in DETECTORS:
-        made.add_row(name, *(f"{by[real, name, 'pdr'].strides_off:+d}" for real in names))
-    out.print(made)
-    out.print(f"* the detectors' constants were chosen on these: {', '.join(TUNED_ON)}", markup=False)
-    made = Table(title="Targets, with the defaults (pdr, threshold)", title_justify="left")
-    for heading in ("recording", "reached", "target"):
-        made.add_column(heading)
-    for real in reals:
-        one = by[real.name, "threshold", "pdr"]
-        value, unit_name = {
+        flaws.rows.append([real.name, real.findings.format, *figures, told])
+        value, unit = {
             "openshoe": (one.return_pct, "% of the distance"),
             "gdin": (one.rmse_m, "m to the footprints"),
             "xio": (one.return_m, "m from its start"),
         }[real.group]
-        made.add_row(real.name, f"{value:.2f} {unit_name}", f"{TARGETS[real.group]:g}")
-    out.print(made)
+        targets.rows.append([real.name, f"{value:.2f} {unit}", f"{TARGETS[real.group]:g}"])
+    judged = "return error, m (gdin: RMSE to the footprints, m)"
+    methods = Sheet("methods", f"Methods, detector threshold: {judged}", ["method", *names])
+    for name in METHODS:
+        methods.rows.append([name, *(cell(by[real, "threshold", name]) for real in names)])
+    made = [flaws, targets, methods]
+    for method in ("pdr", "iez"):
+        sheet = Sheet(f"detectors {method}", f"Detectors, method {method}: {judged}", ["detector", *starred])
+        sheet.rows = [[name, *(cell(by[real, name, method]) for real in names)] for name in DETECTORS]
+        made.append(sheet)
+    strides = Sheet("strides", "Strides found less true, method pdr", ["detector", *starred])
+    strides.rows = [
+        [name, *(f"{by[real, name, 'pdr'].strides_off:+d}" for real in names)] for name in DETECTORS
+    ]
+    return [*made, strides]
+
+
+def mechanics(reals: Sequence[Real]) -> Sheet:
+    """The velocity that a stride leaves, as it is and with the gyros' units or axes changed."""
+    sheet = Sheet("mechanics", "Velocity left by a stride, g T", ["gyros", *(real.name for real in reals)])
+    changes = {"as they are": np.eye(3), **CHANGES}
+    for name, change in changes.items():
+        row = [misclosure(real.recording, rests_of(real.recording), change) for real in reals]
+        sheet.rows.append([name, *("-" if left is None else f"{left:.3f}" for left in row)])
+    return sheet
 
 
 @dataclass(frozen=True)
@@ -212,67 +212,60 @@ def with_drift(reals: Sequence[Real], units: int, imu: str) -> list[Drifted]:
     return found
 
 
-def drift_table(found: Sequence[Drifted], imu: str, units: int) -> None:
+def drift_sheet(found: Sequence[Drifted], imu: str, units: int) -> Sheet:
     """One row a method: heading at the end, and the error that the recording is judged by."""
-    made = Table(
-        title=f"With the drift of {imu} on top, medians of {units} units: heading at the end off undisturbed "
-        "pdr, deg / return error or RMSE, m",
-        title_justify="left",
+    title = (
+        f"With the drift of {imu} on top, medians of {units} units: heading at the end off undisturbed pdr, "
+        "deg / return error or RMSE, m"
     )
-    made.add_column("method")
-    for one in found:
-        made.add_column(one.recording, justify="right")
+    sheet = Sheet("drift", title, ["method", *(one.recording for one in found)])
     for name in METHODS:
-        made.add_row(name, *(f"{one.heading_deg[name]:.1f} / {one.error_m[name]:.2f}" for one in found))
-    out.print(made)
+        sheet.rows.append(
+            [name, *(f"{one.heading_deg[name]:.1f} / {one.error_m[name]:.2f}" for one in found)]
+        )
+    return sheet
 
 
-def bias_times(reals: Sequence[Real]) -> None:
+def bias_times(reals: Sequence[Real]) -> Sheet:
     """How much hangs on T_bias, the time over which the static bias is averaged."""
-    made = Table(title="pdr with another T_bias: return error or RMSE, m", title_justify="left")
-    made.add_column("T_bias s")
-    for real in reals:
-        made.add_column(real.name, justify="right")
+    title = "pdr with another T_bias: return error or RMSE, m"
+    sheet = Sheet("bias", title, ["T_bias s", *(real.name for real in reals)])
     for bias_s in (0.5, 1.0, 1.5, 2.0, 5.0, 10.0):
         row = []
         for real in reals:
             try:
-                given = Reckoning(real.recording, pdr=PdrParams(bias_s=bias_s))
-                row.append(f"{judge(real, 'threshold', 'pdr', METHODS['pdr'].run(given)).error_m:.2f}")
+                row.append(f"{dead_reckoned(real, real.recording, bias_s).error_m:.2f}")
             except InputError:  # it moves by then
                 row.append("-")
-        made.add_row(f"{bias_s:g}", *row)
-    made.add_row("as it rests", *(f"{reckoned(real).error_m:.2f}" for real in reals))
-    out.print(made)
+        sheet.rows.append([f"{bias_s:g}", *row])
+    found = [dead_reckoned(real, real.recording, still_time(real.recording)).error_m for real in reals]
+    sheet.rows.append(["as it rests", *(f"{error:.2f}" for error in found)])
+    return sheet
 
 
-def clipped_on_purpose(reals: Sequence[Real]) -> None:
+def clipped_on_purpose(reals: Sequence[Real]) -> Sheet:
     """Gyros of smaller range: dead reckoning as they are, and with their peaks restored."""
-    made = Table(
-        title="pdr with gyros clipped on purpose: error, m, as clipped -> restored", title_justify="left"
-    )
-    made.add_column("range deg/s")
-    for real in reals:
-        made.add_column(real.name, justify="right")
+    title = "pdr with gyros clipped on purpose: return error or RMSE, m, as clipped / restored"
+    sheet = Sheet("clipped", title, ["range deg/s", *(real.name for real in reals)])
     for range_deg_s in (450, 400, 350, 300):
         limit, row = math.radians(range_deg_s), []
         for real in reals:
             whole = real.recording
-            params = PdrParams(bias_s=still_time(whole))
             raw = Samples(0, whole.t, np.clip(whole.gyro, -limit, limit), whole.accel)
-            mended, _ = condition(raw, "clipped")
-            errors = []
-            for samples in (raw, mended):
-                worn = replace(whole, gyro=samples.gyro)
-                errors.append(judge(real, "", "pdr", METHODS["pdr"].run(Reckoning(worn, pdr=params))).error_m)
-            row.append(f"{errors[0]:.2f} -> {errors[1]:.2f}")
-        made.add_row(f"{range_deg_s}", *row)
-    out.print(made)
+            both = (raw, condition(raw, "clipped")[0])
+            errors = [
+                dead_reckoned(real, replace(whole, gyro=samples.gyro), still_time(whole)).error_m
+                for samples in both
+            ]
+            row.append(" / ".join(f"{error:.2f}" for error in errors))
+        sheet.rows.append([f"{range_deg_s}", *row])
+    return sheet
 
 
-def reckoned(real: Real) -> Judged:
-    """The defaults."""
-    return judge(real, "threshold", "pdr", METHODS["pdr"].run(reckoning(real, "threshold")))
+def dead_reckoned(real: Real, recording: Recording, bias_s: float) -> Judged:
+    """`pdr` of a recording that was made of `real`."""
+    given = Reckoning(recording, pdr=PdrParams(bias_s=bias_s))
+    return judge(real, "threshold", "pdr", METHODS["pdr"].run(given))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -282,6 +275,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     parser.add_argument("--data", type=Path, default=BESIDE, help="folder of recordings")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there too")
+    parser.add_argument("--page", type=Path, metavar="MD", help="put the tables into this page's marks")
     parser.add_argument("--figure", type=Path, metavar="PNG", help="draw the tracks over the footprints")
     parser.add_argument(
         "--units", type=int, default=10, help="units of the added drift (default 10; 0: none)"
@@ -293,18 +287,23 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if not reals:
         raise SystemExit(f"{chosen.data}: no recordings here")
     found, tracks = measure(reals)
-    report(reals, found)
-    bias_times(reals)
-    clipped_on_purpose(reals)
     drifted = with_drift(reals, chosen.units, chosen.imu) if chosen.units else []
+    made = [*sheets(reals, found), mechanics(reals), bias_times(reals), clipped_on_purpose(reals)]
     if drifted:
-        drift_table(drifted, chosen.imu, chosen.units)
+        made.append(drift_sheet(drifted, chosen.imu, chosen.units))
+    for sheet in made:
+        sheet.show()
+    out.print(f"* the detectors' constants were chosen on these: {', '.join(TUNED_ON)}", markup=False)
+    if chosen.page is not None:
+        fill(chosen.page, made)
     if chosen.figure is not None:
         from _real_figure import draw
 
         draw(reals, tracks, chosen.figure)
     figures = [{key: value for key, value in asdict(one).items() if value == value} for one in found]
-    write_json(chosen.json, {"tracks": figures, "drift": [asdict(one) for one in drifted]})
+    if chosen.json is not None:
+        document = {"footfall": __version__, "tracks": figures, "drift": [asdict(one) for one in drifted]}
+        chosen.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

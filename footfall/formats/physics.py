@@ -106,11 +106,11 @@ def check_walk(recording: Recording) -> None:
             f"recording: the gyros turn at {rms:.3g} rad/s RMS while the foot walks: "
             f"they are probably in {cause}"
         )
-    rests = _rests(recording)
-    off = _misclosure(recording, rests, np.eye(3))
+    rests = rests_of(recording)
+    off = misclosure(recording, rests, np.eye(3))
     if off is None or off <= MISCLOSURE[0]:
         return
-    left = {cause: _misclosure(recording, rests, change) or math.inf for cause, change in _CAUSES.items()}
+    left = {cause: misclosure(recording, rests, change) or math.inf for cause, change in CHANGES.items()}
     likely = min(left, key=left.__getitem__)
     if left[likely] <= off / 2:
         raise InputError(f"recording: turned by its gyros, gravity does not stay vertical: {likely}")
@@ -121,7 +121,7 @@ def check_walk(recording: Recording) -> None:
         )
 
 
-_CAUSES: Mapping[str, np.ndarray] = {
+CHANGES: Mapping[str, np.ndarray] = {
     "the gyros are probably in deg/s": np.eye(3) * math.pi / 180,
     "the gyros are probably in rad/s, and were taken for deg/s": np.eye(3) * 180 / math.pi,
     "the gyros probably turn the other way about every axis": -np.eye(3),
@@ -152,14 +152,14 @@ def _unrest(recording: Recording) -> np.ndarray:
     return turn + share((force - rest) ** 2)
 
 
-def _rests(recording: Recording) -> np.ndarray:
+def rests_of(recording: Recording) -> np.ndarray:
     """Samples at the stillest instants, at least half a second apart."""
     still = _unrest(recording)
     apart = max(1, round(0.5 / recording.interval))
     return find_peaks(-still, height=-REST, distance=apart)[0]
 
 
-def _misclosure(recording: Recording, rests: np.ndarray, change: np.ndarray) -> float | None:
+def misclosure(recording: Recording, rests: np.ndarray, change: np.ndarray) -> float | None:
     """Median over strides of the velocity left at the end over g T; None where too few strides are seen.
 
     `change` (3, 3) is applied to the rates first.
