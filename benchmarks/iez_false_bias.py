@@ -27,6 +27,7 @@ from rich.table import Table
 from footfall.hdr.filtered import filter_track
 from footfall.hdr.methods import Reckoning, pdr_track
 from footfall.models.imu import draw_unit, load_spec
+from footfall.models.policy import stock_policy
 from footfall.pdr.detectors import DETECTORS
 from footfall.pdr.filtering import run_filter
 from footfall.pdr.ins import FilterSettings, frozen
@@ -237,7 +238,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     found = Tables(tables)
     found.show()
     if chosen.page:
-        fill(chosen.page, found.markdown())
+        walker = f"The simulated feet are those of the walker `{stock_policy().digest}`."
+        fill(chosen.page, {**found.markdown(), "walker": walker})
     if chosen.figures:
         cause(chosen.figures / "iez_cause.png", simulated, made_of[0])
         cure(chosen.figures / "iez_cure.png", simulated, pairs)

@@ -83,7 +83,7 @@ def test_the_false_bias_page_is_filled_and_drawn(scripts, feet, monkeypatch, tmp
     monkeypatch.setattr(script, "PLAIN_S", 3.0)
     page = tmp_path / "page.md"
     names = ("grid", "parts", "feet", "detectors")
-    page.write_text("".join(f"<!-- table {name} -->\nstale\n<!-- end -->\n" for name in names))
+    page.write_text("".join(f"<!-- table {name} -->\nstale\n<!-- end -->\n" for name in (*names, "walker")))
     out = tmp_path / "out.json"
     script.main(f"--no-real --walks 0 --page {page} --figures {tmp_path} --json {out}".split())
     text = page.read_text()
