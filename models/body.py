@@ -242,7 +242,7 @@ def _contact(build: Build) -> dict:
         "condim": 4,
         "friction": [build.friction, 0.06, 0.0001],
         "solref": [build.sole_time, 1.0],
-        "solimp": [0.98, 0.995, 0.004, 0.5, 2.0],
+        "solimp": [0.9, 0.98, 0.005, 0.5, 2.0],
     }
 
 

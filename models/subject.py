@@ -37,7 +37,7 @@ class Build:
     trunk_mass: float = 1.0
     leg_mass: float = 1.0
     friction: float = 1.0
-    sole_time: float = 0.012
+    sole_time: float = 0.020
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ _LIMITS = {
     "toe_out_deg": (-3.0, 10.0),
     "asymmetry": (-0.03, 0.03),
     "friction": (0.6, 1.2),
-    "sole_time_s": (0.007, 0.018),
+    "sole_time_s": (0.012, 0.026),
 }
 # A mass that stature does not explain sits mostly on the trunk.
 _TRUNK_SHARE, _LEG_SHARE = 0.3, 0.15
@@ -97,7 +97,7 @@ class Subject:
     toe_out_deg: float = 3.0
     asymmetry: float = 0.0
     friction: float = 1.0
-    sole_time_s: float = 0.012
+    sole_time_s: float = 0.020
 
     def __post_init__(self) -> None:
         for key, (low, high) in _LIMITS.items():
@@ -134,7 +134,7 @@ class Subject:
 
 
 # Soles by their softness: the contact's time constant (s). Lengths of the shoe do not differ.
-SHOES = {"stiff": 0.008, "walking": 0.012, "running": 0.017}
+SHOES = {"stiff": 0.013, "walking": 0.020, "running": 0.026}
 
 # The paper's walks "were performed by two different subjects" (Borenstein et al. 2008, section 5).
 SUBJECTS = {

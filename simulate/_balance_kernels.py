@@ -30,10 +30,10 @@ _GATE_DOWN_S, _GATE_UP_S = 0.23, 0.35
 _PENDULUM_S = 0.31  # sqrt(height of the centre of mass / g)
 _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
 _STANDING_POINT = -0.004  # m, centre of mass before the middle of the ankles
-_FORWARD_LOW, _FORWARD_HIGH = -0.05, 0.06  # m about the standing point: where the capture point may lie
-_SIDE_MARGIN = 0.03  # m inside the feet's half distance
-_STAGGER_SHARE = 0.25  # of the stagger by which the feet's support reaches further, forward and back
-_LARGEST_STAGGER = 0.22  # m
+_FORWARD_LOW, _FORWARD_HIGH = -0.05, 0.04  # m about the standing point: where the capture point may lie
+_SIDE_SHARE, _NARROWEST = 0.4, 0.15  # of the feet's distance across, which is at least so wide (m)
+_LARGEST_STAGGER = 0.20  # m
+_FASTEST = 0.25  # m/s; of the closings of a half-trained walker within all these bounds 86 % held, else 46 %
 _LOADED = 100.0  # N
 _ANKLE_X, _ANKLE_Y = -0.04, 0.09  # m from the pelvis in standing, while there are no sensors
 
@@ -244,9 +244,11 @@ def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
     )
     go = (s.speed_goal > GO_SPEED) | (s.closing & (s.gate < 0.3) & off_balance)
     capturable = (
-        (stand.capture_forward > _FORWARD_LOW - _STAGGER_SHARE * stand.stagger)
-        & (stand.capture_forward < _FORWARD_HIGH + _STAGGER_SHARE * stand.stagger)
-        & (np.abs(stand.capture_left) < stand.width / 2 - _SIDE_MARGIN)
+        (stand.capture_forward > _FORWARD_LOW)
+        & (stand.capture_forward < _FORWARD_HIGH)
+        & (stand.forward_velocity < _FASTEST)
+        & (np.abs(stand.capture_left) < _SIDE_SHARE * stand.width)
+        & (stand.width > _NARROWEST)
         & (stand.stagger < _LARGEST_STAGGER)
         & stand.loaded
     )

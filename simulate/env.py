@@ -64,7 +64,7 @@ def draw_build(rng: np.random.Generator) -> Build:
         trunk_mass=around(0.12),
         leg_mass=around(0.10),
         friction=float(rng.uniform(0.7, 1.2)),
-        sole_time=float(rng.uniform(0.008, 0.017)),
+        sole_time=float(rng.uniform(0.012, 0.026)),
     )
 
 

@@ -23,6 +23,9 @@ _LOOK_AHEAD, _LOOK_AHEAD_S = 0.4, 0.9  # m, and s of the present speed: 1.6 m at
 # Speed (m/s) in bends by their curvature (1/m): radii of 10, 4, 2.5 and 1.5 m, and on the spot.
 _BEND_CURVATURE = np.array([0.1, 0.25, 0.4, 0.67, 2.0])
 _BEND_SPEED = np.array([2.0, 1.2, 1.0, 0.85, 0.6])
+# People keep their pace: on straights a walker that is slower than told is told to be faster.
+_PACE_KEEPING_S, _MOST_HASTE, _FASTEST = 6.0, 0.25, 1.75  # s, m/s, m/s
+_WALKING = 0.6  # m/s told; slower is starting or stopping
 
 
 class StrayError(InputError):
@@ -76,7 +79,9 @@ class Pursuit:
         self.route, self.rng, self.dt = route, rng, dt
         self.spacing = float(route.s[1] - route.s[0])
         self._line = np.column_stack([route.x, route.y, route.heading])
-        self._limit = speed_limits(route, pace)
+        self._limit, self._pace = speed_limits(route, pace), pace
+        self._shortfall = 0.0  # m/s, of what is walked against what was told, slowly averaged
+        self._last = (float(route.x[0]), float(route.y[0]))
         self._stops = list(stops)
         self._stood = 0.0
         self._decay = math.exp(-dt / wander_time)
@@ -111,6 +116,10 @@ class Pursuit:
         self._row, stray, aim_x, aim_y = pursue(
             self._line, self.spacing, self._row, self._window, x, y, ahead, self._offset
         )
+        if speed > _WALKING:
+            walked = math.hypot(x - self._last[0], y - self._last[1]) / self.dt
+            self._shortfall += (float(speed) - walked - self._shortfall) * self.dt / _PACE_KEEPING_S
+        self._last = (float(x), float(y))
         if stray > STRAY_LIMIT:
             raise StrayError(f"the walker strayed {stray:.1f} m off its path at {self.progress:.0f} m")
         bearing = math.remainder(math.atan2(aim_y - y, aim_x - x) - heading, 2 * math.pi)
@@ -119,6 +128,9 @@ class Pursuit:
 
     def _speed(self, standing: bool) -> float:
         wanted = float(self._limit[self._row])
+        if wanted >= self._pace:
+            haste = min(max(self._shortfall, -_MOST_HASTE), _MOST_HASTE)
+            wanted = min(wanted + haste, max(_FASTEST, wanted))
         if not self._stops:
             return wanted
         stop = self._stops[0]

@@ -13,6 +13,8 @@ from footfall.models.subject import SUBJECTS, Subject
 from footfall.pdr.strapdown import integrate
 from footfall.simulate.cache import cached_walk, plan_key
 from footfall.simulate.journey import FallError, Plan, walk
+from footfall.simulate.steer import Stop
+from footfall.simulate.truth import runs
 from footfall.simulate.walk import Walk, footfalls_path, read_walk, write_walk
 
 
@@ -40,15 +42,48 @@ def test_it_walks_at_a_human_gait(short_walk: Walk) -> None:
     assert 350 < swing < 900
 
 
-def test_it_begins_standing_and_ends_with_a_footfall(short_plan: Plan, short_walk: Walk) -> None:
-    """A static bias may be taken before the first step: nothing turns there."""
+def test_it_stands_before_and_after(short_plan: Plan, short_walk: Walk) -> None:
+    """A static bias may be taken before the first step: the foot turns by less than 0.1 deg/s."""
     waited = short_walk.t < short_plan.calibration - 0.1
-    np.testing.assert_allclose(short_walk.gyro[waited], 0, atol=1e-12)
+    assert np.degrees(np.linalg.norm(short_walk.gyro[waited], axis=1)).max() < 0.1
+    # What is left of it must not be taken for a bias: less than 0.2 deg over 20 minutes.
+    attitude = Rotation.from_quat(short_walk.quaternion[waited][[0, -1]], scalar_first=True)
+    turned = (attitude[0].inv() * attitude[1]).magnitude() / short_plan.calibration
+    assert np.degrees(turned) * 1200 < 0.2
     np.testing.assert_allclose(np.linalg.norm(short_walk.accel[waited], axis=1), 9.80665, atol=0.05)
     assert short_walk.footfalls.t[0] == pytest.approx(short_plan.calibration, abs=0.02)
-    # It ends with the last whole stance.
-    assert short_walk.stance[-10:-2].any()
-    assert short_walk.t[-1] - short_walk.footfalls.t[-1] < 0.5
+    end = short_walk.t > short_walk.t[-1] - 3.0
+    assert short_walk.stance[end][:-5].all()
+    assert np.degrees(np.linalg.norm(short_walk.gyro[end], axis=1)).max() < 2.0
+    assert np.linalg.norm(short_walk.position[-1, :2] - short_walk.position[end][0, :2]) < 0.005
+
+
+def test_it_pauses_where_it_is_asked_to(short_plan: Plan) -> None:
+    plan = replace(short_plan, stops=(Stop(12.0, 6.0),), calibration=1.0)
+    paused = walk(plan)
+    stances = runs(paused.stance) * (paused.t[1] - paused.t[0])
+    long = stances[np.diff(stances, axis=1)[:, 0] > 3.0]
+    assert len(long) == 3  # the start, the pause, the end
+    assert 5.5 < long[1, 1] - long[1, 0] < 10
+    middle = paused.t.searchsorted(long[1].mean())
+    line = np.column_stack([plan.route.x, plan.route.y])
+    along = plan.route.s[np.linalg.norm(line - paused.position[middle, :2], axis=1).argmin()]
+    assert along == pytest.approx(12.0, abs=0.8)
+    still = slice(middle, middle + 200)
+    assert np.degrees(np.linalg.norm(paused.gyro[still], axis=1)).max() < 1.0
+
+
+def test_a_pushed_walk_says_so(short_plan: Plan, short_walk: Walk) -> None:
+    pushed = walk(replace(short_plan, push=10.0, push_every=5.0))
+    told = np.array(pushed.meta["pushes_s_Ns_Ns"])
+    assert len(told) >= 4
+    np.testing.assert_allclose(np.hypot(told[:, 1], told[:, 2]), 10.0)
+    assert told[0, 0] == short_plan.calibration + 5.0
+    assert "pushes_s_Ns_Ns" not in short_walk.meta
+    before = slice(0, int((told[0, 0] - 0.1) * short_plan.rate_hz))
+    np.testing.assert_array_equal(pushed.position[before], short_walk.position[before])
+    after = int((told[0, 0] + 1.0) * short_plan.rate_hz)
+    assert np.linalg.norm(pushed.position[after] - short_walk.position[after]) > 0.01
 
 
 @pytest.mark.parametrize(("height", "mass"), [(1.52, 52.0), (1.93, 98.0)])
