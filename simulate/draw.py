@@ -26,7 +26,7 @@ from footfall.simulate.walkers import CONTROL_INTERVAL, Walkers
 
 # (azimuth from the walker's heading in degrees, elevation in degrees, distance in m)
 View = tuple[float, float, float]
-QUARTER_VIEW: View = (130.0, -16.0, 4.0)  # from the front, on the right, where the IMU is
+QUARTER_VIEW: View = (130.0, -16.0, 3.5)  # from the front, on the right, where the IMU is
 SIDE_VIEW: View = (100.0, -8.0, 3.0)
 _EYE_HEIGHT = 0.88  # m above the ground, of what the camera looks at
 _LOADED_N, _FLAT_M = 200.0, 0.02  # a foot that carries so much and is so flat leaves a print
@@ -70,7 +70,8 @@ class Stage:
         model = self.model
         # Clipping and shadows to the walker's scale, not to that of a landscape of a kilometre.
         model.stat.extent, model.stat.center[:] = 2.0, 0.0
-        model.vis.map.shadowclip = 12
+        if self._ground is not None:  # which at the usual 4 would have speckles in its own shade
+            model.vis.map.shadowclip = 12
         self.data = mujoco.MjData(model)
         self._dashes = None if plan is None else _dashes(plan.route)
         self._prints: deque[tuple[str, np.ndarray, np.ndarray]] = deque(maxlen=_PRINTS)
