@@ -49,7 +49,9 @@ class Policy:
             raise ValueError(f"observations {x.shape}, expected (n, {len(self.weights[0])})")
         last = len(self.weights) - 1
         for i, (weight, bias) in enumerate(zip(self.weights, self.biases, strict=True)):
-            x = layer(x, weight, bias, i < last)
+            out = np.empty((len(x), len(bias)))
+            layer(x, weight, bias, i < last, out)
+            x = out
         return x
 
 

@@ -112,27 +112,38 @@ def reference(s, ref, stagger, out):  # type: ignore[no-untyped-def]
         out[j] = s.gate * (ref.table[row, j] * factor + offset) + (1 - s.gate) * standing + slope
 
 
+# What a kernel fills is passed to it: an array that it returned would cost more than the kernel.
+
+
 @njit(cache=True, nogil=True)
-def stride_all(state):  # type: ignore[no-untyped-def]
-    """`stride` of every walker; (m,) which of them begin a step."""
-    rows, m = np.empty(len(state), np.intp), 0
+def stride_all(state, rows):  # type: ignore[no-untyped-def]
+    """`stride` of every walker; how many begin a step, and in `rows` (n,) which ones."""
+    count = 0
     for i in range(len(state)):
         stride(state[i])
         if np.floor(state[i].next_phase * 2) != np.floor(state[i].phase * 2):
-            rows[m] = i
-            m += 1
-    return rows[:m]
+            rows[count] = i
+            count += 1
+    return count
 
 
 @njit(cache=True, nogil=True)
-def targets_all(state, ref, substeps):  # type: ignore[no-untyped-def]
-    """`slew`, then `targets` (n, substeps, 17) of every walker."""
-    out = np.empty((len(state), substeps, len(ref[0].scale)))
-    rows = np.empty(substeps, np.intp)
+def targets_all(state, ref, start, out):  # type: ignore[no-untyped-def]
+    """`slew`, then `targets` of every walker into `out` (n, k, 17).
+
+    Fills `start` (n, 1 + nq + nv) with the states that the physics begins with: time 0, qpos, qvel.
+    """
+    rows = np.empty(out.shape[1], np.intp)
     for i in range(len(state)):
-        slew(state[i])
-        targets(state[i], ref[0], rows, out[i])
-    return out
+        s = state[i]
+        slew(s)
+        targets(s, ref[0], rows, out[i])
+        nq = len(s.qpos)
+        start[i, 0] = 0.0
+        for j in range(nq):
+            start[i, 1 + j] = s.qpos[j]
+        for j in range(len(s.qvel)):
+            start[i, 1 + nq + j] = s.qvel[j]
 
 
 @njit(cache=True, nogil=True)

@@ -123,18 +123,6 @@ def look_all(state):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def start_all(state):  # type: ignore[no-untyped-def]
-    """(n, 1 + nq + nv) physics states: time 0, qpos, qvel."""
-    out = np.zeros((len(state), 1 + _N_QPOS + _N_QVEL))
-    for i in range(len(state)):
-        for j in range(_N_QPOS):
-            out[i, 1 + j] = state[i].qpos[j]
-        for j in range(_N_QVEL):
-            out[i, 1 + _N_QPOS + j] = state[i].qvel[j]
-    return out
-
-
-@njit(cache=True, nogil=True)
 def land_all(state, after, sensor):  # type: ignore[no-untyped-def]
     """Take over the last of the physics states (n, k, 1 + nq + nv) and sensors; `settle` and `look`."""
     for i in range(len(state)):
@@ -150,10 +138,8 @@ def land_all(state, after, sensor):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def observe_all(state, mirror, sign):  # type: ignore[no-untyped-def]
-    """(n, N_OBSERVATION) float32."""
-    seen = np.empty((len(state), len(mirror)), np.float32)
+def observe_all(state, mirror, sign, seen):  # type: ignore[no-untyped-def]
+    """Fill `seen` (n, N_OBSERVATION)."""
     own = np.empty(len(mirror))
     for i in range(len(state)):
         observe(state[i], mirror, sign, own, seen[i])
-    return seen

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,12 +43,12 @@ class Pusher:
 
     def __init__(self, pushes: tuple[Push, ...], *, start: float) -> None:
         self._pushes, self._start = pushes, start
-        self._begins = np.array([push.t for push in pushes])
+        self._begins = [push.t for push in pushes]
 
     def force(self, now: float, share: float) -> np.ndarray | None:
         """(1, 3) N times `share` on the trunk `now` (s from the first control step); None between pushes."""
         t = now - self._start + 1e-9
-        i = int(np.searchsorted(self._begins, t)) - 1
+        i = bisect_left(self._begins, t) - 1
         if i < 0 or t - self._begins[i] >= PUSH_S:
             return None
         x, y = self._pushes[i].impulse

@@ -150,7 +150,7 @@ class Outing:
         subject, small = plan.subject, _shrunk(plan)
         route, step = small.route, PHYSICS_STEP / subject.time_scale
         model = build_body(subject.build, timestep=step, mount=plan.mount, ground=small.ground)
-        self.plan, self._scale = small, subject.scale
+        self.plan, self._scale, self._stands = small, subject.scale, False
         self.walkers = Walkers(
             [model],
             gains,
@@ -203,7 +203,9 @@ class Outing:
         walkers = self.walkers
         x, y = walkers.qpos[0, :2]
         standing = bool(walkers.gate.value[0] <= 0)
-        walkers.models[0].opt.noslip_iterations = _NOSLIP_ITERATIONS if standing else 0
+        if standing != self._stands:
+            walkers.models[0].opt.noslip_iterations = _NOSLIP_ITERATIONS if standing else 0
+            self._stands = standing
         speed, turn = self._pursuit.command(x, y, walkers.heading[0], walkers.speed[0], standing)
         walkers.speed_goal[0], walkers.turn_goal[0] = speed, turn
 

@@ -45,5 +45,6 @@ N_OBSERVATION = len(MIRROR)
 
 def observe(state: np.ndarray) -> np.ndarray:
     """(n, N_OBSERVATION) float32 in [-LIMIT, LIMIT] of (n,) records of state.WALKER."""
-    seen: np.ndarray = observe_all(state, MIRROR, SIGN)
+    seen = np.empty((len(state), N_OBSERVATION), np.float32)
+    observe_all(state, MIRROR, SIGN, seen)
     return seen

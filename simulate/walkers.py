@@ -20,7 +20,7 @@ from footfall.models import body, gait
 from footfall.models.subject import Habits
 from footfall.simulate._balance_kernels import act_all
 from footfall.simulate._gait_kernels import REFERENCE, reference_all, stride_all, targets_all
-from footfall.simulate._look_kernels import land_all, look_all, start_all
+from footfall.simulate._look_kernels import land_all, look_all
 from footfall.simulate.feedback import gain_records
 from footfall.simulate.heights import gait_heights, standing_height
 from footfall.simulate.observation import observe
@@ -29,6 +29,9 @@ from footfall.simulate.variability import Variability
 
 CONTROL_INTERVAL = 0.030  # s, nominal: the physics step times `substeps`
 N_ACTION = body.N_SERVOS
+# What drives the physics: servo targets, and the forces on the bodies while there is a push.
+_CONTROL = int(mujoco.mjtState.mjSTATE_CTRL)
+_CONTROL_AND_FORCE = _CONTROL | int(mujoco.mjtState.mjSTATE_XFRC_APPLIED)
 
 Ground = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
@@ -113,6 +116,8 @@ class Walkers:
         self.up_body, self.pitch, self.roll = state["up_body"], state["pitch"], state["roll"]
         self.yaw_error, self.height = state["yaw_error"], state["height"]
         self.grade_forward, self.grade_left = state["grade_forward"], state["grade_left"]
+        self._stepping = np.empty(n, dtype=np.intp)
+        self._start = np.empty((n, 1 + self.qpos.shape[1] + self.qvel.shape[1]))
         self._find_ground(self.qpos[:, 0], self.qpos[:, 1])
         look_all(state)
 
@@ -233,19 +238,18 @@ class Walkers:
         if action.shape != (n, N_ACTION):
             raise ValueError(f"actions {action.shape}, expected ({n}, {N_ACTION})")
         act_all(state, self._gain_records, action)
-        stepping = stride_all(state)
-        if len(stepping):
-            self.variability.draw(stepping, self.rng)
-        target = targets_all(state, REFERENCE, k)
-
-        nq, start = self.qpos.shape[1], start_all(state)
+        stepping = stride_all(state, self._stepping)
+        if stepping:
+            self.variability.draw(self._stepping[:stepping], self.rng)
+        target, start = np.empty((n, k, N_ACTION)), self._start
+        targets_all(state, REFERENCE, start, target)
         after, sensor = np.empty((n, k, start.shape[1])), np.empty((n, k, self._n_sensor))
-        control, spec = target, mujoco.mjtState.mjSTATE_CTRL
+        control, spec = target, _CONTROL
         if push is not None:
             force = np.zeros((n, k, self.models[0].nbody, 6))
             force[:, :, self._trunk, :3] = push[:, None]
             control = np.concatenate([target, force.reshape(n, k, -1)], axis=2)
-            spec = spec | mujoco.mjtState.mjSTATE_XFRC_APPLIED
+            spec = _CONTROL_AND_FORCE
         # The shapes are right by construction: unchecked, a call costs 50 us less.
         self._rollout.rollout(
             self.models,
@@ -261,6 +265,7 @@ class Walkers:
         if self.ground is not None:
             self._find_ground(after[:, -1, 1], after[:, -1, 2])
         land_all(state, after, sensor)
+        nq = self.qpos.shape[1]
         return Trace(after[:, :, 1 : 1 + nq], after[:, :, 1 + nq :], sensor, target)
 
     def reference_now(self) -> np.ndarray:

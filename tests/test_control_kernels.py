@@ -34,10 +34,12 @@ def plain_act(state: np.ndarray, gains: np.ndarray, action: np.ndarray) -> None:
     _balance_kernels.act(Columns(state), Columns(gains), action.T)
 
 
-def plain_stride(state: np.ndarray) -> np.ndarray:
+def plain_stride(state: np.ndarray, rows: np.ndarray) -> int:
     before = np.floor(state["phase"] * 2)
     _gait_kernels.stride(Columns(state))
-    return np.flatnonzero(np.floor(state["next_phase"] * 2) != before)
+    new = np.flatnonzero(np.floor(state["next_phase"] * 2) != before)
+    rows[: len(new)] = new
+    return len(new)
 
 
 def plain_draw(state: np.ndarray, rows: np.ndarray, normal: np.ndarray) -> None:
@@ -46,11 +48,11 @@ def plain_draw(state: np.ndarray, rows: np.ndarray, normal: np.ndarray) -> None:
     state[rows] = some
 
 
-def plain_targets(state: np.ndarray, ref: np.ndarray, substeps: int) -> np.ndarray:
+def plain_targets(state: np.ndarray, ref: np.ndarray, start: np.ndarray, out: np.ndarray) -> None:
     _gait_kernels.slew(Columns(state))
-    out, rows = np.empty((len(state), substeps, N_ACTION)), np.empty((substeps, len(state)), int)
+    start[:] = np.concatenate([np.zeros((len(state), 1)), state["qpos"], state["qvel"]], axis=1)
+    rows = np.empty((out.shape[1], len(state)), int)
     _gait_kernels.targets(Columns(state), ref.view(np.recarray)[0], rows, np.moveaxis(out, 0, -1))
-    return out
 
 
 def plain_reference(state: np.ndarray, ref: np.ndarray, stagger: float) -> np.ndarray:
@@ -61,10 +63,6 @@ def plain_reference(state: np.ndarray, ref: np.ndarray, stagger: float) -> np.nd
 
 def plain_look(state: np.ndarray) -> None:
     _look_kernels.look(Columns(state))
-
-
-def plain_start(state: np.ndarray) -> np.ndarray:
-    return np.concatenate([np.zeros((len(state), 1)), state["qpos"], state["qvel"]], axis=1)
 
 
 def plain_land(state: np.ndarray, after: np.ndarray, sensor: np.ndarray) -> None:
@@ -118,18 +116,22 @@ def test_a_control_step_is_its_twin(seed: int) -> None:
     _balance_kernels.act_all(compiled, gains, action)
     plain_act(plain, gains, action)
     assert_same(compiled, plain)
-    rows = _gait_kernels.stride_all(compiled)
-    np.testing.assert_array_equal(rows, plain_stride(plain))
-    normal = rng.standard_normal((len(rows), 5))
+    rows, other_rows = np.empty((2, n), int)
+    count = _gait_kernels.stride_all(compiled, rows)
+    assert count == plain_stride(plain, other_rows)
+    rows = rows[:count]
+    np.testing.assert_array_equal(rows, other_rows[:count])
+    normal = rng.standard_normal((count, 5))
     _variability_kernels.draw_all(compiled, rows, normal)
     plain_draw(plain, rows, normal)
     assert_same(compiled, plain)
-    targets = _gait_kernels.targets_all(compiled, REFERENCE, 10)
-    np.testing.assert_allclose(targets, plain_targets(plain, REFERENCE, 10), rtol=0, atol=1e-12)
+    (start, other_start), (found, expected) = np.empty((2, n, 52)), np.empty((2, n, 10, N_ACTION))
+    _gait_kernels.targets_all(compiled, REFERENCE, start, found)
+    plain_targets(plain, REFERENCE, other_start, expected)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(start, other_start)
     reference = _gait_kernels.reference_all(compiled, REFERENCE, 0.3)
     np.testing.assert_allclose(reference, plain_reference(plain, REFERENCE, 0.3), rtol=0, atol=1e-12)
-    start = _look_kernels.start_all(compiled)
-    np.testing.assert_array_equal(start, plain_start(plain))
     after, sensor = start[:, None] + rng.normal(0, 0.1, (n, 2, 1)), rng.uniform(0, 500, (n, 2, 31))
     _look_kernels.land_all(compiled, after, sensor)
     plain_land(plain, after, sensor)
@@ -149,9 +151,10 @@ def test_a_body_that_is_not_finite_harms_no_other(seed: int, broken: float) -> N
             one[name][0] = value
         _look_kernels.look_all(one)
         _balance_kernels.act_all(one, gains, action)
-        _gait_kernels.stride_all(one)
-        targets = _gait_kernels.targets_all(one, REFERENCE, 3)
-        _look_kernels.land_all(one, _look_kernels.start_all(one)[:, None], one["sensor"][:, None].copy())
+        _gait_kernels.stride_all(one, np.empty(3, int))
+        start, targets = np.empty((3, 52)), np.empty((3, 4, N_ACTION))
+        _gait_kernels.targets_all(one, REFERENCE, start, targets)
+        _look_kernels.land_all(one, start[:, None], one["sensor"][:, None].copy())
         results.append((observe(one)[1:], targets[1:], one[1:]))
     for with_it, without in zip(*results, strict=True):
         np.testing.assert_array_equal(with_it, without)
@@ -195,7 +198,6 @@ def test_walks_are_those_of_the_twin(monkeypatch: pytest.MonkeyPatch) -> None:
         ("stride_all", plain_stride),
         ("targets_all", plain_targets),
         ("look_all", plain_look),
-        ("start_all", plain_start),
         ("land_all", plain_land),
         ("observe", plain_observe),
     ):
