@@ -34,17 +34,27 @@ _FORCES = (
 )
 
 
+def check_alive(recording: Recording) -> None:
+    """Refuse a sensor that says nothing.
+
+    Raises
+    ------
+    InputError
+        Every row is the same.
+    """
+    for what, values in (("gyros", recording.gyro), ("accelerometers", recording.accel)):
+        if len(values) > 10 and (values == values[0]).all():
+            raise InputError(f"recording: the {what} say the same in every row: they recorded nothing")
+
+
 def check_values(recording: Recording, clipped: Mapping[str, int]) -> None:
-    """Refuse a dead or saturated sensor, and stamps in another unit.
+    """Refuse a saturated sensor, and stamps in another unit.
 
     Raises
     ------
     InputError
         With the likely cause.
     """
-    for what, values in (("gyros", recording.gyro), ("accelerometers", recording.accel)):
-        if len(values) > 10 and (values == values[0]).all():
-            raise InputError(f"recording: the {what} say the same in every row: they recorded nothing")
     for name, count in clipped.items():
         if count > MOST_CLIPPED * len(recording.t):
             raise InputError(

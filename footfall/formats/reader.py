@@ -12,7 +12,7 @@ from footfall.formats.condition import Findings, condition
 from footfall.formats.layout import LAYOUTS
 from footfall.formats.matlab import is_matlab, open_matlab
 from footfall.formats.openshoe import is_openshoe, open_openshoe
-from footfall.formats.physics import check_gravity, check_values, check_walk
+from footfall.formats.physics import check_alive, check_gravity, check_values, check_walk
 from footfall.formats.samples import Samples, Source, joined
 from footfall.formats.table import open_table
 from footfall.recording import Recording
@@ -182,6 +182,8 @@ def judge(recording: Recording, findings: Findings, walk: bool) -> None:
     InputError
         What they refuse.
     """
+    if walk:
+        check_alive(recording)
     check_values(recording, dict(findings.clipped))
     check_gravity(recording)
     if walk:
