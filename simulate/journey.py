@@ -23,7 +23,7 @@ from footfall.models.subject import Subject
 from footfall.simulate.disturbance import Push, Pusher, pushes
 from footfall.simulate.ground import ground_lookup
 from footfall.simulate.route import Route
-from footfall.simulate.steer import Pursuit, Stop
+from footfall.simulate.steer import Pursuit, Stop, StrayError
 from footfall.simulate.truth import ImuTruth, at_rest, divisor, imu_truth, runs
 from footfall.simulate.walk import TrueFootfalls, Walk
 from footfall.simulate.walkers import N_ACTION, Trace, Walkers
@@ -110,11 +110,15 @@ def _shrunk(plan: Plan) -> Plan:
 
 @dataclass(frozen=True)
 class _Record:
-    """The IMU site at every physics step, in the subject's units; contact in body weights."""
+    """The IMU site at every physics step, in the subject's units; contact in body weights.
+
+    `stands`: the walk ends standing, as it should, and not in mid-gait.
+    """
 
     position: np.ndarray
     quaternion: np.ndarray
     contact: np.ndarray
+    stands: bool
 
 
 @dataclass(frozen=True)
@@ -192,6 +196,11 @@ class Outing:
         """The last stop has been stood through."""
         return self._pursuit.finished
 
+    @property
+    def ending(self) -> bool:
+        """The path has been walked: only to stop is left."""
+        return self._pursuit.ending
+
     def steer(self) -> None:
         """Command speed and turn for the next control step.
 
@@ -254,20 +263,29 @@ def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | 
     first = body.SENSOR_TOUCH.start + (0 if plan.mount.foot == "right" else 3)
     touch = slice(first, first + 3)
     pose = slice(body.SENSOR_IMU_POSITION.start, body.SENSOR_IMU_QUATERNION.stop)
-    poses, touches, weight = [], [], 1.0
-    for count, moment in enumerate(stroll(plan, policy)):
-        sensor = moment.trace.sensor[0]
-        poses.append(sensor[:, pose].copy())
-        touches.append(sensor[:, touch].copy())
-        if count == 0:
-            weight = float(sum(moment.walkers.models[0].body_mass)) * GRAVITY
-        if on_progress is not None and count % 100 == 0:
-            on_progress(moment.progress)
+    poses, touches, weight, walked = [], [], 1.0, None
+    try:
+        for count, moment in enumerate(stroll(plan, policy)):
+            sensor = moment.trace.sensor[0]
+            poses.append(sensor[:, pose].copy())
+            touches.append(sensor[:, touch].copy())
+            if count == 0:
+                weight = float(sum(moment.walkers.models[0].body_mass)) * GRAVITY
+            if moment.outing.ending and walked is None:
+                walked = len(poses)
+            if on_progress is not None and count % 100 == 0:
+                on_progress(moment.progress)
+        stands = True
+    except (FallError, StrayError):
+        if walked is None:
+            raise
+        # It failed to stop after the path was walked: the walk ends in mid-gait, before that.
+        poses, touches, stands = poses[:walked], touches[:walked], False
     kept = slice(round(STAND_S / PHYSICS_STEP), None)
     found, load = np.concatenate(poses)[kept], np.concatenate(touches)[kept].sum(axis=1)
     if not (np.isfinite(found).all() and np.isfinite(load).all()):
         raise FallError(f"{plan.name}: the physics is no longer finite (seed {plan.seed})")
-    return _Record(found[:, :3] * plan.subject.scale, found[:, 3:], load / weight)
+    return _Record(found[:, :3] * plan.subject.scale, found[:, 3:], load / weight, stands)
 
 
 def _truth(record: _Record, factor: int) -> tuple[ImuTruth, np.ndarray, np.ndarray]:
@@ -294,6 +312,9 @@ def walk(
 ) -> Walk:
     """The truth of one walk along the plan's route, from standing to standing.
 
+    A walker that walked the route and then failed to stop leaves a walk that ends with its last whole stance
+    on the route: `meta["ends"]` says "standing" or "in mid-gait".
+
     Parameters
     ----------
     on_progress : called now and then with the distance walked (m)
@@ -310,6 +331,11 @@ def walk(
     interval = factor * PHYSICS_STEP
     record = _physics(plan, policy, on_progress)
     truth, contact, stances = _truth(record, factor)
+    if not record.stands:  # a stance that the end of the record cuts short is no footfall
+        whole = stances[stances[:, 1] < len(truth.index) - 1]
+        end = truth.index[whole[-1, 1]] + 2 * factor if len(whole) else 0
+        record = _Record(record.position[:end], record.quaternion[:end], record.contact[:end], False)
+        truth, contact, stances = _truth(record, factor)
     if len(stances) < 3:
         raise FallError(f"{plan.name}: the walker made {len(stances)} footfalls, expected at least 3")
     t = np.arange(len(truth.index)) * interval
@@ -337,6 +363,7 @@ def walk(
             "rate_hz": plan.rate_hz,
             "calibration_s": plan.calibration,
             "policy": policy.digest,
+            "ends": "standing" if record.stands else "in mid-gait",
             **_told_pushes(plan, t[-1]),
             "versions": versions(),
         },

@@ -25,6 +25,7 @@ _BEND_CURVATURE = np.array([0.1, 0.25, 0.4, 0.67, 2.0])
 _BEND_SPEED = np.array([2.0, 1.2, 1.0, 0.85, 0.6])
 # People keep their pace: on straights a walker that is slower than told is told to be faster.
 _PACE_KEEPING_S, _MOST_HASTE, _FASTEST = 6.0, 0.25, 1.75  # s, m/s, m/s
+_END = 0.5  # m before the route's end
 _WALKING = 0.6  # m/s told; slower is starting or stopping
 
 
@@ -100,6 +101,11 @@ class Pursuit:
         """Every stop has been stood through."""
         return not self._stops
 
+    @property
+    def ending(self) -> bool:
+        """The route has been walked: only to stop is left."""
+        return len(self._stops) <= 1 and self.progress > self.route.length - _END
+
     def command(
         self, x: float, y: float, heading: float, speed: float, standing: bool
     ) -> tuple[float, float]:
@@ -124,7 +130,8 @@ class Pursuit:
             raise StrayError(f"the walker strayed {stray:.1f} m off its path at {self.progress:.0f} m")
         bearing = math.remainder(math.atan2(aim_y - y, aim_x - x) - heading, 2 * math.pi)
         turn = min(max(_BEARING_GAIN * bearing, -TURN_LIMIT), TURN_LIMIT)
-        return self._speed(standing), turn
+        told = self._speed(standing)
+        return told, turn if told > 0 else 0.0  # who stops does not turn any more
 
     def _speed(self, standing: bool) -> float:
         wanted = float(self._limit[self._row])

@@ -12,7 +12,7 @@ from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import SUBJECTS, Subject
 from footfall.pdr.strapdown import integrate
 from footfall.simulate.cache import cached_walk, plan_key
-from footfall.simulate.journey import FallError, Plan, walk
+from footfall.simulate.journey import STAND_S, FallError, Plan, walk
 from footfall.simulate.steer import Stop
 from footfall.simulate.truth import runs
 from footfall.simulate.walk import Walk, footfalls_path, read_walk, write_walk
@@ -71,6 +71,31 @@ def test_it_pauses_where_it_is_asked_to(short_plan: Plan) -> None:
     assert along == pytest.approx(12.0, abs=0.8)
     still = slice(middle, middle + 200)
     assert np.degrees(np.linalg.norm(paused.gyro[still], axis=1)).max() < 1.0
+
+
+def test_a_fall_after_the_path_spoils_the_stand_and_not_the_walk(short_plan: Plan, short_walk: Walk) -> None:
+    class Clumsy(Policy):
+        """Walks as it should and loses its head at the end."""
+
+        calls = 0
+
+        def __call__(self, observation: np.ndarray) -> np.ndarray:
+            Clumsy.calls += 1
+            action = super().__call__(observation)
+            return (
+                action if Clumsy.calls < last else np.where(np.arange(action.shape[1]) % 2, 1.0, -1.0)[None]
+            )
+
+    assert short_walk.meta["ends"] == "standing"
+    stances = runs(short_walk.stance)
+    last = int((STAND_S + short_walk.t[stances[-1, 0]] - 0.2) / 0.03)
+    policy = stock_policy()
+    clumsy = walk(short_plan, Clumsy(policy.weights, policy.biases, policy.feedback_gains, "clumsy"))
+    assert clumsy.meta["ends"] == "in mid-gait"
+    n = len(clumsy.t)
+    np.testing.assert_array_equal(clumsy.gyro[: n - 5], short_walk.gyro[: n - 5])
+    assert clumsy.stance[-10:].any()
+    assert np.linalg.norm(clumsy.footfalls.position[-1, :2] - short_walk.footfalls.position[-1, :2]) < 2.5
 
 
 def test_a_pushed_walk_says_so(short_plan: Plan, short_walk: Walk) -> None:
