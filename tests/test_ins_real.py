@@ -44,7 +44,7 @@ def test_footprints_are_met(real, name):
     found = reckoning(recordings[name]).filtered(FilterSettings()).footfalls
     prints = recordings[name].footprints
     assert len(found) == len(prints)
-    assert reader.rigid_rmse(found.position[:, :2], prints[:, 1:]) < 0.5
+    assert reader.rigid_rmse(found.position[:, :2], prints[:, 1:]) < 0.35
 
 
 @pytest.mark.parametrize("name", ["openshoe 31", "openshoe 44", "xio long"])
