@@ -56,9 +56,9 @@ def scatter_table(
 ) -> str:
     """Return errors against how much the stance yaw scatters, each gait with its best threshold (deg)."""
     head = ["gait", "stance yaw SD (deg)", "foot beside the path, standing / walking (deg)"]
-    head += ["a / k1 (deg), IHDE / no mean heading"]
+    head += ["a / k1 (deg)"]
     for test in tests:
-        head += [f"{test}: IEZ", "IHDE", "no mean heading"]
+        head += [f"{test}: IEZ", "IHDE", "foot known", "and no mean heading"]
     rows = []
     for gait in gaits:
         mine = [one for one in found if one.gait == gait]
@@ -69,17 +69,17 @@ def scatter_table(
         )
         heading = np.mean([np.array(one.errors)[:, 1] for one in mine], axis=0)
         half = len(thresholds)
-        best = [int(np.argmin(heading[first : first + half])) for first in (1, 1 + half)]
-        places = [0, 1 + best[0], 1 + half + best[1]]
+        best = [int(np.argmin(heading[1 + i * half : 1 + (i + 1) * half])) for i in range(3)]
+        places = [0, *(1 + i * half + best[i] for i in range(3))]
         row = [gait, f"{yaw:.1f}", f"{standing:.1f} / {walking:.1f}"]
         row.append(" / ".join(f"{thresholds[i]:g}" for i in best))
         for test in tests:
             errors = np.array([one.errors for one in mine if one.test == test])
-            row += [_number(np.median(errors[:, i, 0])) for i in places] if len(errors) else [""] * 3
+            row += [_number(np.median(errors[:, i, 0])) for i in places] if len(errors) else [""] * 4
         rows.append(row)
     paper = ["the paper's", "", "", ""]
     for test in tests:
-        paper += [range_text(IHDE_TABLE_2[test]["iez"]), range_text(IHDE_TABLE_2[test]["ihde"]), ""]
+        paper += [range_text(IHDE_TABLE_2[test]["iez"]), range_text(IHDE_TABLE_2[test]["ihde"]), "", ""]
     return _markdown(head, [*rows, paper])
 
 

@@ -259,7 +259,7 @@ class Scattered:
     ----------
     yaw_sd_deg : SD of the stance yaw about the path
     standing_deg, walking_deg : the foot's heading less the path's, at the start and in the mean
-    errors : (1 + 2 thresholds, 3) of `navigate`, as lists: IEZ, IHDE by threshold, without the mean heading
+    errors : (1 + 3 thresholds, 3) of `navigate`, as lists: IEZ, then the `forms` of IHDE, each by threshold
     """
 
     gait: str
@@ -270,30 +270,35 @@ class Scattered:
     errors: Sequence[Sequence[float]]
 
 
-def thresholds(tuned: Tuned) -> list[IhdeParams | None]:
-    """None for IEZ, and IHDE with every threshold: first with, then without the mean heading."""
-    forms = (tuned.ihde, tuned.ihde_alone)
-    return [None, *(replace(form, a=form.k1 * radians(scatter)) for form in forms for scatter in THRESHOLDS)]
+def forms(tuned: Tuned, foot: float) -> list[IhdeParams | None]:
+    """None for IEZ; by threshold IHDE, IHDE that knows the walking foot, and that without the mean heading.
+
+    Parameters
+    ----------
+    foot : rad, by how much the foot points further to the left in walking than in standing at the start
+    """
+    known = replace(tuned.ihde.directions, reference=foot)
+    kinds = (tuned.ihde, *(replace(one, directions=known) for one in (tuned.ihde, tuned.ihde_alone)))
+    return [None, *(replace(kind, a=kind.k1 * radians(scatter)) for kind in kinds for scatter in THRESHOLDS)]
 
 
-def scattered(job: tuple[str, Job]) -> Scattered | None:
+def scattered(job: tuple[str, Job, Tuned]) -> Scattered | None:
     """Judge one walk of a gait."""
-    name, one = job
-    errors = navigate(one)
-    if isinstance(errors, str):
-        err.print(f"[red]left out:[/red] {errors}")
+    name, one, tuned = job
+    try:
+        falls = one.walk().footfalls
+    except InputError as error:
+        err.print(f"[red]left out:[/red] {error}")
         return None
-    plan, falls = one.scenario.plan(0), one.walk().footfalls
+    test, plan = one.scenario.name, one.scenario.plan(0)
     rows = places(plan.route, falls.position)
-    off = np.degrees(falls.heading - plan.route.heading[rows])
-    return Scattered(
-        name,
-        one.scenario.name,
-        gait(plan, falls).stance_yaw_sd_deg,
-        float(off[0]),
-        float(off[steady(plan.route)[rows]].mean()),
-        errors.tolist(),
-    )
+    off = falls.heading - plan.route.heading[rows]
+    standing, walking = float(off[0]), float(off[steady(plan.route)[rows]].mean())
+    ways = tuple(Way(params, tuned.matched(test)) for params in forms(tuned, walking - standing))
+    errors = navigate(replace(one, ways=ways))
+    assert not isinstance(errors, str)
+    yaw = gait(plan, falls).stance_yaw_sd_deg
+    return Scattered(name, test, yaw, degrees(standing), degrees(walking), errors.tolist())
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -345,11 +350,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         todo = [
             (
                 name,
-                Job(
-                    replace(scenarios[test], **change),
-                    seed,
-                    tuple(Way(params, tuned.matched(test)) for params in thresholds(tuned)),
-                ),
+                Job(replace(scenarios[test], **change), seed, ()),
+                tuned,
             )
             for name, change in VARIANTS.items()
             for test in TESTS

@@ -83,17 +83,17 @@ def test_each_gait_stands_with_the_threshold_that_suits_it(scripts):
     bench = scripts.ihde_table2
 
     def walk(gait, test, suits):
-        """IEZ errs by 9 %; the threshold `suits` leaves 0.5 % and 1 deg, without the mean heading 0.25 %."""
-        errors = np.full((1 + 2 * len(bench.THRESHOLDS), 3), 9.0)
-        errors[1 + suits] = 0.5, 1.0, 1.0
-        errors[1 + len(bench.THRESHOLDS) + suits] = 0.25, 1.0, 1.0
+        """IEZ errs by 9 %; the threshold `suits` leaves 1 deg and, by form, 0.5, 0.25 and 0.1 %."""
+        errors = np.full((1 + 3 * len(bench.THRESHOLDS), 3), 9.0)
+        for form, left in enumerate((0.5, 0.25, 0.1)):
+            errors[1 + form * len(bench.THRESHOLDS) + suits] = left, 1.0, 1.0
         return bench.Scattered(gait, test, 2.0, -3.0, -2.2, errors.tolist())
 
     found = [walk(gait, test, suits) for gait, suits in (("a", 0), ("b", 3)) for test in bench.TESTS]
     table = scripts.ihde_page.scatter_table(found, ["a", "b", "c"], bench.TESTS, bench.THRESHOLDS)
     _, _, first, second, paper = table.splitlines()
-    assert first == "| a | 2.0 | -3.0 / -2.2 | 0.7 / 0.7 |" + " 9.00 | 0.50 | 0.25 |" * 3
-    assert second == "| b | 2.0 | -3.0 / -2.2 | 2 / 2 |" + " 9.00 | 0.50 | 0.25 |" * 3
+    assert first == "| a | 2.0 | -3.0 / -2.2 | 0.7 / 0.7 / 0.7 |" + " 9.00 | 0.50 | 0.25 | 0.10 |" * 3
+    assert second == "| b | 2.0 | -3.0 / -2.2 | 2 / 2 / 2 |" + " 9.00 | 0.50 | 0.25 | 0.10 |" * 3
     assert "8.7 to 9.6 | 0.2 to 0.4" in paper
 
 
