@@ -6,7 +6,8 @@ share of it come from a walk in which nothing but MuJoCo is timed, where the res
 MuJoCo alone repeats the same physics: every control step from its recorded state under its recorded servo
 targets, in a few large rollouts, which must end in the same states to the last bit. "whole / bare" is
 therefore what everything around the physics costs. Last, several walks at once: simulated seconds per second
-of the clock, each walk's own, added up. Trust ratios more than seconds.
+of the clock, each walk's own, added up. Trust ratios more than seconds, and on a busy machine, whose other
+work empties the caches, the median control step more than the sum.
 
 python benchmarks/walker_speed.py
 """
@@ -95,21 +96,27 @@ class Watch:
         return kept
 
 
-def watched_walk(plan: Plan) -> tuple[float, float, Watch]:
-    """CPU seconds of a walk and of MuJoCo in it, and where the rest goes."""
-    watch = Watch()
+def watched_walk(plan: Plan) -> tuple[float, np.ndarray, Watch]:
+    """CPU seconds of a walk, those at which MuJoCo began and ended each step (n, 2), and where the rest goes."""
+    watch, times = Watch(), []
     rollouts = rollout.Rollout.rollout
-    with mock.patch.object(rollout.Rollout, "rollout", watch.over(PHYSICS, rollouts)):
+
+    def timed(*arguments: Any, **keywords: Any) -> Any:
+        begun = time.process_time()
+        result = rollouts(*arguments, **keywords)
+        times.append((begun, time.process_time()))
+        return result
+
+    with mock.patch.object(rollout.Rollout, "rollout", timed):
         start = time.process_time()
         walk(plan)
         whole = time.process_time() - start
-    inside = watch.seconds.pop(PHYSICS)
     with ExitStack() as stack:
         stack.enter_context(mock.patch.object(rollout.Rollout, "rollout", watch.physics(rollouts)))
         for label, owner, name in WATCHED:
             stack.enter_context(mock.patch.object(owner, name, watch.over(label, getattr(owner, name))))
         walk(plan)
-    return whole, inside, watch
+    return whole, np.array(times), watch
 
 
 def bare(steps: Sequence[Step], batch: int = 500) -> float:
@@ -143,18 +150,20 @@ def bare(steps: Sequence[Step], batch: int = 500) -> float:
 def measure(plan: Plan) -> dict[str, float]:
     """Label -> CPU seconds for 20 simulated minutes, and the totals."""
     _warm_up(plan)
-    whole, inside, watch = watched_walk(plan)
+    whole, times, watch = watched_walk(plan)
+    inside, step = times[:, 1] - times[:, 0], np.diff(times[:, 0])
     alone = bare(watch.steps)
     simulated = len(watch.steps) * SUBSTEPS * PHYSICS_STEP
     scale = MINUTES * 60 / simulated
     once = watch.seconds.pop("set-up")
     parts = {label: value * scale for label, value in watch.seconds.items()} | {"set-up": once}
     whole = (whole - once) * scale + once
-    result = {PHYSICS: inside * scale} | parts
+    result = {PHYSICS: float(inside.sum()) * scale} | parts
     result[REST] = whole - sum(result.values())
     return result | {
         "whole": whole,
-        "share in MuJoCo": inside * scale / whole,
+        "share in MuJoCo": result[PHYSICS] / whole,
+        "share, median step": float(np.median(inside) / np.median(step)),
         "bare MuJoCo": alone * scale,
         "whole / bare": whole / (alone * scale),
         "simulated minutes": simulated / 60,

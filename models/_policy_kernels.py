@@ -4,18 +4,30 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
 
 @njit(cache=True, nogil=True)
-def layer(x, weight, bias, bend, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (n, b) with x (n, a) weight (a, b) + bias (b,), through an ELU where `bend`."""
+def perceptron(x, sizes, parameters, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n, sizes[-1]) from x (n, sizes[0]); ELU between the layers.
+
+    `parameters` holds of each layer the weights (inputs, outputs), row by row, then the biases.
+    """
     for i in range(len(x)):
-        out[i] = bias
-        for k in range(weight.shape[0]):
+        here, at = x[i], 0
+        for layer in range(len(sizes) - 1):
+            inputs, outputs = sizes[layer], sizes[layer + 1]
+            there = np.empty(outputs)
+            for j in range(outputs):
+                there[j] = parameters[at + inputs * outputs + j]
             # Along the rows of the weights: neighbouring sums share the processor's wide registers.
-            for j in range(weight.shape[1]):
-                out[i, j] += x[i, k] * weight[k, j]
-        if bend:
-            for j in range(weight.shape[1]):
-                out[i, j] = out[i, j] if out[i, j] > 0 else math.expm1(out[i, j])
+            for k in range(inputs):
+                row = parameters[at + k * outputs : at + (k + 1) * outputs]
+                for j in range(outputs):
+                    there[j] += here[k] * row[j]
+            if layer < len(sizes) - 2:
+                for j in range(outputs):
+                    there[j] = there[j] if there[j] > 0 else math.expm1(there[j])
+            here, at = there, at + (inputs + 1) * outputs
+        out[i] = here

@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from footfall.errors import InputError
-from footfall.models._policy_kernels import layer
+from footfall.models._policy_kernels import perceptron
 
 
 @dataclass(frozen=True)
@@ -45,14 +45,19 @@ class Policy:
             Observations of another length.
         """
         x = np.ascontiguousarray(observation, dtype=float)
-        if x.shape[1:] != self.weights[0].shape[:1]:
-            raise ValueError(f"observations {x.shape}, expected (n, {len(self.weights[0])})")
-        last = len(self.weights) - 1
-        for i, (weight, bias) in enumerate(zip(self.weights, self.biases, strict=True)):
-            out = np.empty((len(x), len(bias)))
-            layer(x, weight, bias, i < last, out)
-            x = out
-        return x
+        sizes, parameters = self._packed
+        if x.shape[1:] != (sizes[0],):
+            raise ValueError(f"observations {x.shape}, expected (n, {sizes[0]})")
+        action = np.empty((len(x), sizes[-1]))
+        perceptron(x, sizes, parameters, action)
+        return action
+
+    @cached_property
+    def _packed(self) -> tuple[np.ndarray, np.ndarray]:
+        """Sizes of the layers, the input's first, and weights and biases layer by layer."""
+        layers = list(zip(self.weights, self.biases, strict=True))
+        sizes = np.array([len(self.weights[0]), *(len(bias) for bias in self.biases)])
+        return sizes, np.concatenate([part.ravel() for layer in layers for part in layer])
 
 
 def load_policy(path: str | Path) -> Policy:
@@ -69,8 +74,7 @@ def load_policy(path: str | Path) -> Policy:
         with np.load(source) as data:
             layers = sum(name.startswith("weight_") for name in data.files)
             weights, biases = (
-                tuple(np.ascontiguousarray(data[f"{name}_{i}"]) for i in range(layers))
-                for name in ("weight", "bias")
+                tuple(data[f"{name}_{i}"] for i in range(layers)) for name in ("weight", "bias")
             )
             gains = data["feedback_gains"]
             meta = json.loads(str(data["meta"]))
