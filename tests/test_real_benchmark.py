@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from synthetic_foot import walk
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "benchmarks"))
+import long_recording
 import real_recordings
 from _real import find, rigid_fit, rigid_rmse
 from _real_page import Sheet, fill
@@ -105,3 +106,12 @@ def test_a_page_without_a_mark_is_told(tmp_path):
 def test_an_empty_folder_is_told(tmp_path):
     with pytest.raises(SystemExit, match="no recordings here"):
         real_recordings.main(["--data", str(tmp_path)])
+
+
+def test_a_long_recording_is_written_tracked_and_weighed(capsys):
+    long_recording.main(["--gigabytes", "0.003"])
+    first, second = capsys.readouterr().out.splitlines()
+    rows, strides, footfalls = (int(word) for word in first.split() if word.isdigit())
+    assert rows > 25_000
+    assert footfalls == strides + 11  # ten strides before, the stand after
+    assert "GiB" in second
