@@ -97,7 +97,7 @@ class Watch:
 
 
 def watched_walk(plan: Plan) -> tuple[float, np.ndarray, Watch]:
-    """CPU seconds of a walk, those at which MuJoCo began and ended each step (n, 2), and where the rest goes."""
+    """CPU seconds of a walk, those at which MuJoCo began and ended each step (n, 2), where the rest goes."""
     watch, times = Watch(), []
     rollouts = rollout.Rollout.rollout
 
