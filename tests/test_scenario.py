@@ -18,7 +18,7 @@ IHDE_NAMES = ("ihde-test1", "ihde-test2", "ihde-test3")
 
 
 def test_the_stock_scenarios():
-    assert set(stock_scenarios()) == {*LONG_NAMES, *IHDE_NAMES}
+    assert {*LONG_NAMES, *IHDE_NAMES} <= set(stock_scenarios())
 
 
 @pytest.mark.parametrize(("name", "length"), list(zip(IHDE_NAMES, (202, 90, 455), strict=True)))
@@ -178,7 +178,7 @@ def test_a_users_file_works_as_a_stock_name_does(own):
     assert [without.unit_seed(walk) for walk in range(3)] == [40, 41, 42]
 
 
-@pytest.mark.parametrize("name", [*LONG_NAMES, *IHDE_NAMES])
+@pytest.mark.parametrize("name", stock_scenarios())
 def test_a_copy_of_a_stock_file_is_the_same_scenario(name, tmp_path):
     stock, copy = load_scenario(name), load_scenario(shutil.copy(STOCK / f"{name}.toml", tmp_path))
     assert np.array_equal(copy.path.route.x, stock.path.route.x)
