@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from footfall.errors import InputError
-from footfall.models.body import JOINTS, MOUNTS, SERVO_JOINT, SERVOS, Ground, Mount, build_body
+from footfall.models.body import JOINTS, MOUNTS, N_JOINTS, SERVO_JOINT, SERVOS, Ground, Mount, build_body
 from footfall.models.gait import TABLE, reference_angles
 from footfall.models.subject import Build, Subject, draw_subject
 
@@ -41,7 +41,7 @@ def test_drawn_people_can_all_walk(seed: int) -> None:
 
 
 @settings(max_examples=30)
-@given(st.lists(st.floats(-0.5, 0.5), min_size=17, max_size=17))
+@given(st.lists(st.floats(-0.5, 0.5), min_size=N_JOINTS, max_size=N_JOINTS))
 def test_the_body_is_its_own_mirror_image(angles: list[float]) -> None:
     """Mirrored joint angles put each foot where the mirror image of the other one is."""
     from footfall.simulate.feedback import JOINT_MIRROR, JOINT_SIGN

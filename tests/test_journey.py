@@ -22,7 +22,8 @@ def test_it_goes_where_the_route_goes(short_plan: Plan, short_walk: Walk) -> Non
     route, line = short_plan.route, np.column_stack([short_plan.route.x, short_plan.route.y])
     places = short_walk.footfalls.position[:, :2]
     off = np.array([np.linalg.norm(line - place, axis=1).min() for place in places])
-    assert off.max() < 0.6
+    assert off[:-3].max() < 0.6
+    assert off.max() < 1.2  # it may take a step more to stop
     assert np.linalg.norm(places[0] - line[0]) < 2.0
     assert np.linalg.norm(places[-1] - line[-1]) < 2.0
     walked = np.hypot(*np.diff(places, axis=0).T).sum()
@@ -52,9 +53,9 @@ def test_it_stands_before_and_after(short_plan: Plan, short_walk: Walk) -> None:
     assert np.degrees(turned) * 1200 < 0.2
     np.testing.assert_allclose(np.linalg.norm(short_walk.accel[waited], axis=1), 9.80665, atol=0.05)
     assert short_walk.footfalls.t[0] == pytest.approx(short_plan.calibration, abs=0.02)
-    end = short_walk.t > short_walk.t[-1] - 3.0
+    end = short_walk.t > short_walk.t[-1] - 1.0
     assert short_walk.stance[end][:-5].all()
-    assert np.degrees(np.linalg.norm(short_walk.gyro[end], axis=1)).max() < 2.0
+    assert np.degrees(np.linalg.norm(short_walk.gyro[end], axis=1)).max() < 0.5
     assert np.linalg.norm(short_walk.position[-1, :2] - short_walk.position[end][0, :2]) < 0.005
 
 
@@ -63,12 +64,12 @@ def test_it_pauses_where_it_is_asked_to(short_plan: Plan) -> None:
     paused = walk(plan)
     stances = runs(paused.stance) * (paused.t[1] - paused.t[0])
     long = stances[np.diff(stances, axis=1)[:, 0] > 3.0]
-    assert len(long) == 3  # the start, the pause, the end
-    assert 5.5 < long[1, 1] - long[1, 0] < 10
-    middle = paused.t.searchsorted(long[1].mean())
+    assert len(long) == 2  # the pause and the end
+    assert 5.5 < long[0, 1] - long[0, 0] < 10
+    middle = paused.t.searchsorted(long[0].mean())
     line = np.column_stack([plan.route.x, plan.route.y])
     along = plan.route.s[np.linalg.norm(line - paused.position[middle, :2], axis=1).argmin()]
-    assert along == pytest.approx(12.0, abs=0.8)
+    assert along == pytest.approx(12.0, abs=1.2)
     still = slice(middle, middle + 200)
     assert np.degrees(np.linalg.norm(paused.gyro[still], axis=1)).max() < 1.0
 

@@ -13,6 +13,7 @@ from footfall.models.policy import load_policy
 from footfall.simulate.observation import N_OBSERVATION
 from footfall.simulate.ppo import HORIZON
 from footfall.simulate.train import ENVS, schedule, train
+from footfall.simulate.walkers import N_ACTION
 
 BATCH = HORIZON * ENVS
 
@@ -31,7 +32,7 @@ def samples(out: Path) -> list[int]:
 def test_it_writes_a_policy_that_acts(trained: Path) -> None:
     policy = load_policy(trained / "policy.npz")
     action = policy(np.random.default_rng(0).standard_normal((5, N_OBSERVATION)))
-    assert action.shape == (5, 15)
+    assert action.shape == (5, N_ACTION)
     assert np.isfinite(action).all()
     assert action.std() > 0
     assert policy.meta["samples"] == 2 * BATCH
