@@ -29,6 +29,7 @@ CROSSING_PHASE = 0.72  # where in the normalised stride the pitch rate crosses z
 SEAM_PHASE = 0.36
 STILL_RATE = 0.6  # rad/s
 QUIET_S = 0.100
+_SWING_RATE = 2.0  # rad/s, about the pitch axis
 _NORMAL = (0.8, 1.25)  # of the median stride's duration: others start, stop or hesitate
 
 
@@ -153,6 +154,13 @@ def mirrored(signals: Signals) -> Signals:
     return Signals(signals.gyro * [-1, 1, -1], signals.accel * [1, -1, 1])
 
 
+def swings(signals: Signals, first: int, last: int) -> bool:
+    """A stride, with a push-off before its swing, and not a shuffle of someone who stops."""
+    pitch = signals.gyro[first : last + 1, 1]
+    swing = int(np.argmin(pitch))
+    return bool(pitch[swing] < -_SWING_RATE and pitch[: swing + 1].max() > _SWING_RATE)
+
+
 def stride_of(signals: Signals, first: int, last: int) -> Stride:
     """Read one stride between two middles of stance.
 
@@ -208,7 +216,7 @@ def read_foot(signals: Signals, left: bool = False) -> Foot:
     if left:
         signals = mirrored(signals)
     rows = middles(signals)
-    found = [stride_of(signals, a, b) for a, b in pairwise(rows)]
+    found = [stride_of(signals, a, b) for a, b in pairwise(rows) if swings(signals, a, b)]
     times = np.diff([stride.crossing for stride in found]) / RATE_HZ
     found = [replace(stride, duration=float(time)) for stride, time in zip(found[1:], times, strict=True)]
     usual = np.median(times)
