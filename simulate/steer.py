@@ -15,7 +15,8 @@ from footfall.simulate._steer_kernels import pursue
 from footfall.simulate.route import Route
 
 TURN_LIMIT = 1.0  # rad/s
-SLOWING = 0.5  # m/s2, before corners and stops
+SLOWING = 0.5  # m/s2, before corners
+STOPPING = 0.72  # m/s2 at which a walker that is told to stop slows down (walkers.py)
 STRAY_LIMIT = 1.5  # m off the route: a stumble
 _BEARING_GAIN = 1.5  # 1/s
 _SEARCH = 2.0  # m of route that one control step may advance at the most
@@ -25,7 +26,7 @@ _BEND_CURVATURE = np.array([0.1, 0.25, 0.4, 0.67, 2.0])
 _BEND_SPEED = np.array([2.0, 1.2, 1.0, 0.85, 0.6])
 # People keep their pace: on straights a walker that is slower than told is told to be faster.
 _PACE_KEEPING_S, _MOST_HASTE, _FASTEST = 6.0, 0.25, 1.75  # s, m/s, m/s
-_END = 0.5  # m before the route's end
+_LAST_STEP = 0.3  # m, walked after the wish to stop beyond what slowing down takes
 _WALKING = 0.6  # m/s told; slower is starting or stopping
 
 
@@ -84,7 +85,7 @@ class Pursuit:
         self._shortfall = 0.0  # m/s, of what is walked against what was told, slowly averaged
         self._last = (float(route.x[0]), float(route.y[0]))
         self._stops = list(stops)
-        self._stood = 0.0
+        self._stood, self._stopping = 0.0, False
         self._decay = math.exp(-dt / wander_time)
         self._stir = wander * math.sqrt(1 - self._decay**2)
         self._offset = wander * float(rng.standard_normal())
@@ -104,7 +105,7 @@ class Pursuit:
     @property
     def ending(self) -> bool:
         """The route has been walked: only to stop is left."""
-        return len(self._stops) <= 1 and self.progress > self.route.length - _END
+        return len(self._stops) <= 1 and self._stopping
 
     def command(
         self, x: float, y: float, heading: float, speed: float, standing: bool
@@ -130,10 +131,10 @@ class Pursuit:
             raise StrayError(f"the walker strayed {stray:.1f} m off its path at {self.progress:.0f} m")
         bearing = math.remainder(math.atan2(aim_y - y, aim_x - x) - heading, 2 * math.pi)
         turn = min(max(_BEARING_GAIN * bearing, -TURN_LIMIT), TURN_LIMIT)
-        told = self._speed(standing)
+        told = self._speed(float(speed), standing)
         return told, turn if told > 0 else 0.0  # who stops does not turn any more
 
-    def _speed(self, standing: bool) -> float:
+    def _speed(self, speed: float, standing: bool) -> float:
         wanted = float(self._limit[self._row])
         if wanted >= self._pace:
             haste = min(max(self._shortfall, -_MOST_HASTE), _MOST_HASTE)
@@ -141,13 +142,13 @@ class Pursuit:
         if not self._stops:
             return wanted
         stop = self._stops[0]
-        left = stop.distance - self.progress
-        allowed = math.sqrt(2 * SLOWING * max(left, 0.0))
-        if allowed > 0.35:
-            return min(wanted, allowed)
+        # A stop is one wish, in good time, and not a slow walk towards a line.
+        if not self._stopping and stop.distance - self.progress > speed**2 / (2 * STOPPING) + _LAST_STEP:
+            return wanted
+        self._stopping = True
         if standing:
             self._stood += self.dt
             if self._stood >= stop.duration:
                 self._stops.pop(0)
-                self._stood = 0.0
+                self._stood, self._stopping = 0.0, False
         return 0.0
