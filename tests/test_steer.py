@@ -4,7 +4,16 @@ import numpy as np
 import pytest
 
 from footfall.simulate.route import Route
-from footfall.simulate.steer import SLOWING, STRAY_LIMIT, TURN_LIMIT, Pursuit, Stop, StrayError, speed_limits
+from footfall.simulate.steer import (
+    SLOWING,
+    STOPPING,
+    STRAY_LIMIT,
+    TURN_LIMIT,
+    Pursuit,
+    Stop,
+    StrayError,
+    speed_limits,
+)
 
 DT = 0.03
 
@@ -28,7 +37,9 @@ def follow(pursuit: Pursuit, share: float = 1.0) -> tuple[np.ndarray, np.ndarray
     x = y = heading = speed = 0.0
     points, turns, speeds = [], [], []
     for _ in range(100_000):
-        speed, turn = pursuit.command(x, y, heading, speed, speed == 0.0)
+        told, turn = pursuit.command(x, y, heading, speed, speed == 0.0)
+        # Told to stop it slows down as a walker does; otherwise it obeys at once.
+        speed = max(0.0, speed - STOPPING * DT) if told == 0.0 else told
         if pursuit.progress >= pursuit.route.length - 0.1:
             break
         heading += turn * DT
@@ -95,7 +106,7 @@ def test_it_stands_where_and_as_long_as_told() -> None:
     assert still[: int(3.0 / DT) - 1].all()
     on_the_way = still & (points[:, 0] > 1) & (points[:, 0] < 39)
     assert on_the_way.sum() * DT == pytest.approx(5.0, abs=0.1)
-    np.testing.assert_allclose(points[on_the_way, 0], 20.0, atol=0.3)
+    np.testing.assert_allclose(points[on_the_way, 0], 20.0, atol=0.4)
 
 
 def test_wander_has_the_asked_amplitude() -> None:
