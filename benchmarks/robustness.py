@@ -6,6 +6,7 @@ from the path, its mean (half the step width) removed, corners included. People:
 stance yaw about 2 deg.
 
 python benchmarks/robustness.py --seeds 4
+python benchmarks/robustness.py straight --metres 400 --push 10 --seeds 4
 """
 
 from __future__ import annotations
@@ -43,6 +44,7 @@ class Gait:
     stance_yaw_sd_deg: float = np.nan
     lateral_rms_m: float = np.nan
     lateral_max_m: float = np.nan
+    stands: bool = False
 
 
 def places(route: Route, position: np.ndarray) -> np.ndarray:
@@ -69,8 +71,9 @@ def gait(plan: Plan, falls: TrueFootfalls) -> Gait:
     route = plan.route
     rows = places(route, falls.position)
     calm = steady(route)[rows]
-    # The first stride begins in a standing foot: it is none of those that are judged.
-    stride = np.diff(falls.t)[1:][calm[1:-1] & calm[2:]]
+    # Strides from and to a standing foot are none of those that are judged.
+    stride = np.diff(falls.t)[1:-1][calm[1:-2] & calm[2:-1]]
+    stride = stride[stride < 1.5 * np.median(stride)]
     length = np.hypot(*np.diff(falls.position[:, :2], axis=0).T)
     direction = route.heading[rows]
     offset = falls.position[:, :2] - np.column_stack([route.x[rows], route.y[rows]])
@@ -96,23 +99,34 @@ def measure(plan: Plan, use_cache: bool) -> Gait:
         truth = cached_walk(plan) if use_cache else walk(plan)
     except InputError as error:
         return Gait(plan.name, plan.seed, stumble=str(error))
-    return gait(plan, truth.footfalls)
+    return replace(gait(plan, truth.footfalls), stands=truth.meta["ends"] == "standing")
 
 
-def plans(scenario: Scenario, seeds: int, first: int | None, metres: float | None) -> list[Plan]:
+def plans(scenario: Scenario, seeds: int, first: int | None, metres: float | None, push: float) -> list[Plan]:
     """One plan a seed; the scenario's subjects in turn."""
     made = [scenario.plan(number) for number in range(seeds)]
     start = scenario.seed if first is None else first
-    return [
-        replace(plan, seed=start + number, route=shortened(plan.route, metres))
-        for number, plan in enumerate(made)
-    ]
+    changed = []
+    for number, plan in enumerate(made):
+        route = shortened(plan.route, metres)
+        stops = tuple(stop for stop in plan.stops if stop.distance < route.length - 3)
+        changed.append(replace(plan, seed=start + number, route=route, stops=stops, push=push))
+    return changed
 
 
 def report(walks: Sequence[Gait]) -> None:
     """One row a scenario, means over its walks that reached the end; then every stumble."""
     table = Table(title="Means over the walks that reached the end", title_justify="left")
-    headings = ("", "reached the end", "min", "m/s", "stride s", "stride SD ms", "stance yaw SD deg")
+    headings = (
+        "",
+        "reached the end",
+        "and stood",
+        "min",
+        "m/s",
+        "stride s",
+        "stride SD ms",
+        "stance yaw SD deg",
+    )
     for heading in (*headings, "lateral RMS m", "largest m"):
         table.add_column(heading, justify="right" if heading else "left")
     for name in dict.fromkeys(one.scenario for one in walks):
@@ -124,6 +138,7 @@ def report(walks: Sequence[Gait]) -> None:
                 key: np.mean([one[key] for one in good]) for key in Gait.__annotations__ if key.count("_")
             }
             row += [
+                str(sum(one["stands"] for one in good)),
                 f"{np.mean([one['minutes'] for one in good]):.1f}",
                 f"{mean['speed_m_s']:.3f}",
                 f"{mean['stride_s']:.3f}",
@@ -148,12 +163,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--seeds", type=int, default=4, help="walks of each (default 4)")
     parser.add_argument("--first-seed", type=int, help="of the walks (default: each scenario's own)")
     parser.add_argument("--metres", type=float, help="walk only the first of each")
+    parser.add_argument("--push", type=float, default=0.0, metavar="NS", help="at the trunk every 10 s")
     parser.add_argument("--no-cache", action="store_true", help="walk anew and keep no walks")
     chosen = parser.parse_args(arguments)
 
     todo: list[Plan] = []
     for name in chosen.scenarios or stock_scenarios():
-        todo += plans(load_scenario(name), chosen.seeds, chosen.first_seed, chosen.metres)
+        todo += plans(load_scenario(name), chosen.seeds, chosen.first_seed, chosen.metres, chosen.push)
     work = partial(measure, use_cache=not chosen.no_cache)
     walks = run_all(work, todo, chosen.processes, "walks")
     report(walks)
