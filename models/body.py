@@ -15,6 +15,7 @@ import numpy as np
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
+from footfall.models.looks import SHIRT, SHOE, SKIN, TROUSERS, add_look, add_sky_and_paving, add_torso_looks
 from footfall.models.subject import REFERENCE_HEIGHT_M, Build
 
 # Joint names, in the order of qpos after the free joint. Right leg first: it carries the IMU by default.
@@ -171,7 +172,7 @@ def build_body(
         diffuse=[0.6, 0.6, 0.6],
     )
     _inertial(pelvis, [0, 0, 0.02], 10.65, np.array([0.08, 0.07, 0.09]) * build.trunk_mass, build.trunk_mass)
-    _look(pelvis, [0, -0.08, 0], [0, 0.08, 0], 0.09, _TROUSERS)
+    add_look(pelvis, [0, -0.08, 0], [0, 0.08, 0], 0.09, TROUSERS)
     for side in "rl":
         _add_leg(pelvis, side, build)
     torso = pelvis.add_body(name="torso", pos=[0, 0, 0.10])
@@ -179,7 +180,7 @@ def build_body(
     _inertial(torso, [0, 0, 0.274], 32.7, inertia, build.trunk_mass)
     for name, axis in _LUMBAR_AXES.items():
         _joint(torso, name, *axis)
-    _add_torso_looks(torso)
+    add_torso_looks(torso)
     for side in "rl":
         _add_arm(torso, side, build)
 
@@ -190,13 +191,6 @@ def build_body(
         actuator.forcerange = [servo.low, servo.high]
     _add_sensors(spec, mount)
     return spec.compile()
-
-
-_TROUSERS = (0.20, 0.24, 0.34, 1.0)
-_SHIRT = (0.75, 0.35, 0.25, 1.0)
-_SKIN = (0.85, 0.68, 0.56, 1.0)
-_HAIR = (0.25, 0.18, 0.13, 1.0)
-_SHOE = (0.92, 0.92, 0.95, 1.0)
 
 
 def _inertial(
@@ -222,20 +216,6 @@ def _joint(
     joint.stiffness = [stiffness, 0, 0]
 
 
-def _look(body: mujoco.MjsBody, start: list[float], end: list[float], radius: float, rgba: tuple) -> None:
-    """A capsule that is only seen."""
-    body.add_geom(
-        type=mujoco.mjtGeom.mjGEOM_CAPSULE,
-        fromto=[*start, *end],
-        size=[radius, 0, 0],
-        rgba=rgba,
-        contype=0,
-        conaffinity=0,
-        mass=0,
-        group=1,
-    )
-
-
 def _contact(build: Build) -> dict:
     """A sole on the ground: it resists twisting like a patch, not like a point, and hardly creeps."""
     return {
@@ -248,26 +228,7 @@ def _contact(build: Build) -> dict:
 
 def _add_ground(spec: mujoco.MjSpec, build: Build, ground: Ground | None) -> None:
     world = spec.worldbody
-    spec.add_texture(
-        name="sky",
-        type=mujoco.mjtTexture.mjTEXTURE_SKYBOX,
-        builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
-        rgb1=[0.60, 0.74, 0.90],
-        rgb2=[0.93, 0.95, 0.97],
-        width=256,
-        height=256,
-    )
-    spec.add_texture(
-        name="paving",
-        type=mujoco.mjtTexture.mjTEXTURE_2D,
-        builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
-        rgb1=[0.66, 0.68, 0.66],
-        rgb2=[0.62, 0.64, 0.62],
-        width=128,
-        height=128,
-    )
-    paving = spec.add_material(name="paving", texuniform=True, texrepeat=[0.5, 0.5])
-    paving.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "paving"
+    add_sky_and_paving(spec)
     common = {"name": "ground", "contype": 1, "conaffinity": 0, "material": "paving"}
     common |= _contact(build)
     if ground is None:
@@ -307,18 +268,18 @@ def _add_leg(pelvis: mujoco.MjsBody, side: str, build: Build) -> None:
     inertia = np.array([0.144, 0.144, 0.03]) * build.leg_mass
     _inertial(thigh, [0, 0, -0.433 * thigh_length], 7.5, inertia, build.leg_mass)
     joints(thigh, "hip_flexion", "hip_adduction", "hip_rotation")
-    _look(thigh, [0, 0, 0], [0, 0, -thigh_length], 0.065, _TROUSERS)
+    add_look(thigh, [0, 0, 0], [0, 0, -thigh_length], 0.065, TROUSERS)
 
     shank = thigh.add_body(name=f"shank_{side}", pos=[0, 0, -thigh_length])
     inertia = np.array([0.059, 0.059, 0.006]) * build.leg_mass
     _inertial(shank, [0, 0, -0.433 * shank_length], 3.49, inertia, build.leg_mass)
     joints(shank, "knee")
-    _look(shank, [0, 0, 0], [0, 0, -shank_length + 0.03], 0.048, _TROUSERS)
+    add_look(shank, [0, 0, 0], [0, 0, -shank_length + 0.03], 0.048, TROUSERS)
 
     foot = shank.add_body(name=f"foot_{side}", pos=[0, 0, -shank_length])
     _inertial(foot, [0.05, 0, -0.04], 1.15, np.array([0.0012, 0.005, 0.005]))
     joints(foot, "ankle", "subtalar")
-    touch = {"contype": 0, "conaffinity": 1, "mass": 0, "rgba": _SHOE, "group": 1} | _contact(build)
+    touch = {"contype": 0, "conaffinity": 1, "mass": 0, "rgba": SHOE, "group": 1} | _contact(build)
     # Two long, flat ellipsoids side by side: the shoe's sole, on which the foot rolls from heel to ball.
     sole, length = -ANKLE_HEIGHT, build.foot
     for name, y in (("in", -sign * SOLE_HALF_GAP), ("out", sign * SOLE_HALF_GAP)):
@@ -330,8 +291,8 @@ def _add_leg(pelvis: mujoco.MjsBody, side: str, build: Build) -> None:
             **touch,
         )
     for y in (-0.018, 0.018):
-        _look(foot, [-0.025 * length, y * 0.6, -0.045], [0.10 * length, y, -0.053], 0.022, _SHOE)
-    _look(foot, [-0.02 * length, 0, -0.03], [0.07 * length, 0, -0.04], 0.034, _SHOE)
+        add_look(foot, [-0.025 * length, y * 0.6, -0.045], [0.10 * length, y, -0.053], 0.022, SHOE)
+    add_look(foot, [-0.02 * length, 0, -0.03], [0.07 * length, 0, -0.04], 0.034, SHOE)
     toe = foot.add_body(name=f"toe_{side}", pos=[0.135 * length, 0, sole + 0.018])
     _inertial(toe, [0.03, 0, 0], 0.15, np.full(3, 1e-4))
     joints(toe, "toe")
@@ -344,7 +305,7 @@ def _add_leg(pelvis: mujoco.MjsBody, side: str, build: Build) -> None:
         **touch,
     )
     for y in (-0.018, 0.018):
-        _look(toe, [0.0, y, 0.004], [0.045, y / 4.5, 0.006], 0.02, _SHOE)
+        add_look(toe, [0.0, y, 0.004], [0.045, y / 4.5, 0.006], 0.02, SHOE)
 
     # Boxes round each contact, for the touch sensors.
     hidden = {"type": mujoco.mjtGeom.mjGEOM_BOX, "group": 4}
@@ -358,16 +319,6 @@ def _add_leg(pelvis: mujoco.MjsBody, side: str, build: Build) -> None:
     toe.add_site(name=f"toe_{side}", pos=[0.055, 0, 0], size=[0.04, 0.06, 0.04], **hidden)
 
 
-def _add_torso_looks(torso: mujoco.MjsBody) -> None:
-    """Trunk and head; their mass is in the torso's inertia."""
-    for y in (-0.07, 0.07):
-        _look(torso, [0, y, 0.02], [0, 1.3 * y, 0.36], 0.10, _SHIRT)
-    _look(torso, [0, -0.14, 0.385], [0, 0.14, 0.385], 0.065, _SHIRT)
-    _look(torso, [0, 0, 0.42], [0.01, 0, 0.50], 0.05, _SKIN)
-    _look(torso, [0.015, 0, 0.575], [0.01, 0, 0.63], 0.088, _SKIN)
-    _look(torso, [-0.01, 0, 0.60], [-0.005, 0, 0.645], 0.091, _HAIR)
-
-
 def _add_arm(torso: mujoco.MjsBody, side: str, build: Build) -> None:
     """An arm that swings at the shoulder, its elbow a little bent."""
     sign = -1 if side == "r" else 1
@@ -378,9 +329,9 @@ def _add_arm(torso: mujoco.MjsBody, side: str, build: Build) -> None:
     _inertial(arm, [0.03, sign * 0.03, -0.308], 3.75, inertia, build.trunk_mass)
     _joint(arm, f"shoulder_{side}", *_SHOULDER_AXIS)
     elbow, wrist = [-0.01, sign * 0.045, -0.31], [0.07, sign * 0.045, -0.55]
-    _look(arm, [0, 0, 0], elbow, 0.045, _SHIRT)
-    _look(arm, elbow, wrist, 0.036, _SKIN)
-    _look(arm, wrist, [0.105, sign * 0.04, -0.63], 0.034, _SKIN)
+    add_look(arm, [0, 0, 0], elbow, 0.045, SHIRT)
+    add_look(arm, elbow, wrist, 0.036, SKIN)
+    add_look(arm, wrist, [0.105, sign * 0.04, -0.63], 0.034, SKIN)
 
 
 # Sensor layout: what control and scoring read, in this order.
