@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from footfall.hdr.ihde import IhdeParams
 from footfall.scenarios.paper import IHDE_TABLE_2, range_text
 
 if TYPE_CHECKING:
@@ -49,6 +51,22 @@ def setting_table(settings: Mapping[str, tuple[str, str]]) -> str:
     """What the tuning walks chose, beside the defaults."""
     rows = [[name, *words] for name, words in settings.items()]
     return _markdown(["", "chosen on the tuning walks", "default"], rows)
+
+
+def threshold_table(grid: Sequence[IhdeParams], errors: Mapping[str, np.ndarray]) -> str:
+    """IHDE by its threshold at sigma = 4 deg, on the tuning walks; errors: test -> (seeds, grid, 3)."""
+    head = ["a / k1 (deg)", "mean heading"]
+    for test in errors:
+        head += [f"{test}: P_err (%), median", "heading error (deg)"]
+    rows = []
+    for i, params in enumerate(grid):
+        if round(degrees(params.sigma), 6) != 4:
+            continue
+        row = [f"{degrees(params.a / params.k1):.3g}", "fed back" if params.fallback else "left out"]
+        for found in errors.values():
+            row += [_number(float(np.median(found[:, i, 0]))), f"{found[:, i, 1].mean():.1f}"]
+        rows.append(row)
+    return _markdown(head, rows)
 
 
 def scatter_table(

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 from _common import err, options, out, run_all, write_json
-from _ihde_page import fill, scatter_table, setting_table, table_2
+from _ihde_page import fill, scatter_table, setting_table, table_2, threshold_table
 from robustness import gait, places, steady
 
 from footfall.errors import InputError
@@ -54,7 +54,7 @@ SIGMA_V = tuple(float(v) for v in np.geomspace(0.01, 0.64, 13))  # m/s
 HDE_GRID = tuple(HdeParams(sigma=radians(sigma)) for sigma in (2, 4, 8, 12, 20, 40))
 IHDE_GRID = tuple(
     IhdeParams(a=IhdeParams.k1 * radians(scatter), sigma=radians(sigma), fallback=fallback)
-    for fallback, scatter, sigma in product((True, False), (1.5, 2, 2.5, 3, 4), (2, 4, 8))
+    for fallback, scatter, sigma in product((True, False), (1, 1.5, 2, 2.5, 3, 4, 6), (2, 4, 8))
 )
 JIMENEZ_GRID = tuple(
     JimenezParams(gate=radians(gate), sigma=radians(sigma)) for gate, sigma in product((3, 4, 6), (1, 2, 4))
@@ -178,13 +178,14 @@ def best(grid: Sequence[Any], errors: Mapping[str, np.ndarray], tests: Sequence[
 
 @dataclass(frozen=True)
 class Tuned:
-    """What the tuning walks chose: sigma_v (m/s) by test, and the methods' parameters."""
+    """What the tuning walks chose: sigma_v (m/s), parameters; test -> errors (seeds, IHDE_GRID, 3) there."""
 
     sigma_v: Mapping[str, float]
     hde: HdeParams
     ihde: IhdeParams
     ihde_alone: IhdeParams
     jimenez: JimenezParams
+    ihde_errors: Mapping[str, np.ndarray]
 
     def matched(self, test: str) -> FilterSettings:
         """The paper's filter with the zero velocity's noise that gives its IEZ row."""
@@ -227,6 +228,7 @@ def tune(scenarios: Mapping[str, Scenario], seeds: Sequence[int], processes: int
         IHDE_GRID[best(IHDE_GRID[:half], with_mean, TESTS)],
         IHDE_GRID[half + best(IHDE_GRID[half:], alone, TESTS)],
         JIMENEZ_GRID[best(JIMENEZ_GRID, part(start + 2 * half, len(JIMENEZ_GRID)), TESTS)],
+        part(start, 2 * half),
     )
 
 
@@ -355,6 +357,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "matched": table_2(matched),
         "ours": table_2(ours),
         "settings": setting_table(settings_in_words(tuned)),
+        "thresholds": threshold_table(IHDE_GRID, tuned.ihde_errors),
     }
 
     gaits: list[Scattered] = []

@@ -115,7 +115,9 @@ def test_it_runs_from_walks_to_page(scripts, workshop, tmp_path, monkeypatch, ca
     for grid in ("HDE_GRID", "JIMENEZ_GRID"):
         monkeypatch.setattr(bench, grid, getattr(bench, grid)[:2])
     monkeypatch.setattr(bench, "IHDE_GRID", [bench.IHDE_GRID[0], bench.IHDE_GRID[-1]])
-    marks = "".join(f"<!-- table {name} -->\n<!-- end -->\n" for name in ("matched", "ours", "settings"))
+    marks = "".join(
+        f"<!-- table {name} -->\n<!-- end -->\n" for name in ("matched", "ours", "settings", "thresholds")
+    )
     page, out = tmp_path / "page.md", tmp_path / "out.json"
     page.write_text(marks)
     few = ["--walks", "2", "--tuning-walks", "1", "--gait-walks", "0", "--processes", "1"]
