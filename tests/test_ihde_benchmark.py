@@ -61,7 +61,7 @@ def test_the_velocity_noise_is_matched_between_the_scanned_ones(scripts):
 def test_the_best_set_is_the_best_over_the_tests(scripts):
     errors = {test: np.random.default_rng(seed).uniform(1, 2, (4, 5, 3)) for seed, test in enumerate("abc")}
     errors["a"][:, 3, 1] = errors["b"][:, 3, 1] = 0.5
-    errors["c"][:, 3, 1] = 9.0
+    errors["c"][:, 3, 1] = 99.0
     assert scripts.ihde_table2.best(range(5), errors, "ab") == 3
     assert scripts.ihde_table2.best(range(5), errors, "abc") != 3
 
