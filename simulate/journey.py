@@ -160,6 +160,7 @@ class Outing:
             gains,
             rng=stream(plan.seed, "gait variability"),
             ground=None if small.ground is None else ground_lookup(small.ground),
+            substeps=SUBSTEPS,
         )
         first = Stop(0.0, stand / subject.time_scale)
         last = Stop(route.length, END_STAND_S / subject.time_scale)

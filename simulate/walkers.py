@@ -69,6 +69,7 @@ class Walkers:
     rng : of the gait's variability
     ground : (x, y) -> height (n,) and gradient (n, 2); level when None
     threads : for the physics; 0 = the calling thread
+    substeps : physics steps of a control step; as many as come nearest to CONTROL_INTERVAL when None
     """
 
     def __init__(
@@ -79,12 +80,13 @@ class Walkers:
         rng: np.random.Generator,
         ground: Ground | None = None,
         threads: int = 0,
+        substeps: int | None = None,
     ) -> None:
         n = len(models)
         self.n, self.models, self.rng, self.ground = n, list(models), rng, ground
         self.gains = gains
         timesteps = np.array([model.opt.timestep for model in models])
-        self.substeps = max(1, round(CONTROL_INTERVAL / timesteps.mean()))
+        self.substeps = substeps or max(1, round(CONTROL_INTERVAL / timesteps.mean()))
         self.dt = self.substeps * timesteps
         if np.abs(self.dt / CONTROL_INTERVAL - 1).max() > 0.1:
             raise ValueError(

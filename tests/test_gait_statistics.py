@@ -123,8 +123,8 @@ def test_strides_are_those_that_were_walked(scripts, motion, mount):
     for stride in foot.strides:
         first, last = physics_rows(foot, (stride.first, stride.last))
         moved = position[last] - position[first]
-        assert np.hypot(*stride.step[:2]) == pytest.approx(np.hypot(*moved[:2]), abs=0.01)
-        assert stride.step[2] == pytest.approx(moved[2], abs=0.01)
+        assert np.hypot(*stride.step[:2]) == pytest.approx(np.hypot(*moved[:2]), abs=0.02)
+        assert stride.step[2] == pytest.approx(moved[2], abs=0.02)
         assert stride.turn == pytest.approx(heading[last] - heading[first], abs=np.radians(0.5))
 
 
