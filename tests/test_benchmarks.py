@@ -82,7 +82,7 @@ def test_walker_speed_accounts_for_every_second(scripts, short: str, tmp_path: P
     scripts.walker_speed.main(["--scenario", short, "--metres", "8", "--json", str(out)])
     found = json.loads(out.read_text())["cpu_s"]
     assert set(found) == {"level", "heightfield"}
-    labels = {label for label, _, _ in scripts.walker_speed.WATCHED} | {scripts.walker_speed.REST}
+    labels = {label for label, _, _ in scripts.walker_speed.WATCHED} | {"MuJoCo", scripts.walker_speed.REST}
     for row in found.values():
         assert all(row[label] > 0 for label in labels)
         assert sum(row[label] for label in labels) == pytest.approx(row["whole"])
