@@ -125,7 +125,7 @@ def test_people_walk_to_scale(short_plan: Plan, short_walk: Walk, height: float,
     (time, length), (reference_time, reference_length) = stride(other), stride(short_walk)
     assert time / reference_time == pytest.approx(person.time_scale, rel=0.05)
     assert length / reference_length == pytest.approx(person.scale, rel=0.08)
-    # Every control step takes 30 ms of the person's own time, so that they stand as long as they are asked to.
+    # Every control step takes 30 ms of the person's own time: they stand as long as they are asked to.
     waited = other.t < short_plan.calibration - 0.1
     assert np.degrees(np.linalg.norm(other.gyro[waited], axis=1)).max() < 0.1
     still = other.t < 20
