@@ -61,7 +61,12 @@ def test_workers_end_with_their_parent(here, ending):
     """Ctrl-C goes to all processes of the terminal, a kill to the parent alone; neither may leave workers."""
     if len(os.sched_getaffinity(0)) < 2:
         pytest.skip("on one core there are no workers")
-    process = shell("run straight --walks 8 --no-cache --out new", here, start_new_session=True)
+    # A suite in the background of a shell ignores Ctrl-C, and so would what it starts.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        process = shell("run straight --walks 4 --no-cache --out new", here, start_new_session=True)
+    finally:
+        signal.signal(signal.SIGINT, before)
     wait_until(lambda: len(members(process.pid)) >= 3 or process.poll() is not None)
     assert process.poll() is None
     if ending == "ctrl-c":
