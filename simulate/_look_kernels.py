@@ -12,7 +12,7 @@ from numba.extending import register_jitable
 from footfall.models import body
 from footfall.simulate._elementwise import choose, clip, turned
 
-SPEED_SLEW = 0.8  # m/s2, of the commanded speed
+SPEED_SLEW, SLOWING_SHARE = 0.8, 0.9  # m/s2, of the commanded speed upwards; share of it downwards
 TURN_SLEW = 2.0  # rad/s2
 LIMIT = 6.0  # of an observation
 _DOWN, _TOPPLED, _LOST_HEADING = 0.75, 0.75, 1.1  # m, cosine, rad: a body beyond these has fallen
@@ -69,7 +69,7 @@ def settle(s):  # type: ignore[no-untyped-def]
     s.fresh = False
     s.heading += s.turn * s.dt
     slew = SPEED_SLEW * s.dt
-    s.speed += clip(s.speed_goal - s.speed, -0.9 * slew, choose(s.gate > 0.3, slew, 0.0))
+    s.speed += clip(s.speed_goal - s.speed, -SLOWING_SHARE * slew, choose(s.gate > 0.3, slew, 0.0))
     turn = s.turn + clip(s.turn_goal - s.turn, -TURN_SLEW * s.dt, TURN_SLEW * s.dt)
     s.turn = choose(s.gate < 0.5, 0.0, turn)
     along, across = along_heading(s)

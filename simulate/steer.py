@@ -11,12 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from footfall.errors import InputError
+from footfall.simulate._look_kernels import SLOWING_SHARE, SPEED_SLEW
 from footfall.simulate._steer_kernels import pursue
 from footfall.simulate.route import Route
 
 TURN_LIMIT = 1.0  # rad/s
 SLOWING = 0.5  # m/s2, before corners
-STOPPING = 0.72  # m/s2 at which a walker that is told to stop slows down (walkers.py)
+STOPPING = SLOWING_SHARE * SPEED_SLEW  # m/s2 at which a walker that is told to stop slows down
 STRAY_LIMIT = 1.5  # m off the route: a stumble
 _BEARING_GAIN = 1.5  # 1/s
 _SEARCH = 2.0  # m of route that one control step may advance at the most
