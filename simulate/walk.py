@@ -50,7 +50,7 @@ class Walk:
     """The truth of one simulated walk at the IMU site. Row 0 is the start pose.
 
     The walker stands for the first `meta["calibration_s"]` seconds, of which the static bias is taken; row 0
-    of the footfalls ends them. `meta["ends"]` is "standing", or "in mid-gait" where it failed to stop at last.
+    of the footfalls ends them. `meta["ends"]` is "standing", or "in mid-gait" where it failed to stop.
 
     Attributes
     ----------
