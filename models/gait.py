@@ -29,11 +29,11 @@ _HIP = {
 }  # fmt: skip
 _KNEE = {
     0: 3, 5: 9, 10: 15, 15: 18, 20: 17, 25: 13.5, 30: 9.5, 35: 6.5, 40: 5.5, 45: 7, 50: 13, 55: 23, 60: 37,
-    65: 52, 70: 61, 73: 63, 77: 60, 80: 54, 85: 38, 90: 20, 95: 6,
+    65: 52, 70: 61, 73: 63, 77: 61, 80: 56, 85: 38, 90: 16, 95: 3,
 }  # fmt: skip
 _ANKLE = {
-    0: 5, 3: 1, 7: -4, 10: -0.5, 15: 4.5, 20: 8, 30: 11, 40: 12.5, 45: 12, 50: 7, 55: -3, 60: -14, 63: -17,
-    66: -15, 70: -9, 75: -1, 80: 4, 85: 5, 90: 5, 95: 6,
+    0: 8, 3: 3, 7: -4, 10: -0.5, 15: 4.5, 20: 8, 30: 11, 40: 12.5, 45: 12, 50: 7, 55: -3, 60: -14, 63: -17,
+    66: -15, 70: -9, 75: -1, 80: 4, 85: 5, 90: 6, 95: 8,
 }  # fmt: skip
 # The foot lands on the heel's outer edge, pronates, and supinates in push-off; in early swing toes turn out.
 _SUBTALAR = {0: 5, 3: 4, 8: -1, 15: -2, 30: -2, 45: -1, 52: 0, 58: 4, 65: 7, 70: 7, 80: 3, 90: 2, 95: 4}
@@ -106,13 +106,13 @@ SPREAD = mask("hip_adduction") - mask("subtalar")
 @register_jitable
 def stride_frequency(speed: np.ndarray) -> np.ndarray:
     """Strides a second at `speed` (m/s) of the 1.75 m body; below 0.7 m/s the steps get short instead."""
-    return 0.92 * (np.maximum(speed, 0.7) / 1.25) ** 0.45
+    return 0.885 * (np.maximum(speed, 0.7) / 1.25) ** 0.45
 
 
 @register_jitable
 def hip_amplitude(speed: np.ndarray) -> np.ndarray:
-    """Hip excursion relative to that at 1.25 m/s."""
-    return (np.maximum(speed, 0.03) / 1.25) ** 0.55
+    """Hip excursion relative to that of the table, which is that at 1.2 m/s."""
+    return (np.maximum(speed, 0.03) / 1.2) ** 0.55
 
 
 @register_jitable

@@ -4,7 +4,8 @@ Laws in terms of one walker `s` (see state.py); the face is walkers.py. Foot pla
 SIMBICON's and Raibert's terms, written for right stance: left stance is its mirror image. A standing
 controller (ankles and hips about the pose in which the feet stopped) is blended with the gait by a gate: 0
 stands, 1 walks. Stopping waits for a step from which the body can be captured (its extrapolated centre of
-mass stays over the feet); until then it steps on the spot. A stand that loses its balance steps.
+mass stays over the feet); until then it creeps on, since a body that steps on the spot drifts backwards. A
+stand that loses its balance steps.
 """
 
 from __future__ import annotations
@@ -19,22 +20,24 @@ from footfall.models.body import HIP_HEIGHT, JOINTS, N_SERVOS, SENSOR_FOOT_POSIT
 from footfall.models.gait import INDEX, mask
 from footfall.simulate._elementwise import choose, clip, turned
 from footfall.simulate.feedback import SERVO_MIRROR, SERVO_SIGN
-from footfall.simulate.state import ACTION_SCALE
+from footfall.simulate.state import ACTION_SCALE, CREEP
 
 FOOT_OFFSET = 0.075  # m from the stance foot to the pelvis, sideways, at which no correction is made
 GO_SPEED = 0.2  # m/s; a commanded speed above it is a wish to walk
 _RESIDUAL_LIMIT = 2.0  # of action scale, feedback included
 _BRAKE = 0.2  # rad per m/s
-_STOP_SPEED = 0.12
+_STOP_SPEED = CREEP + 0.03
 _GATE_DOWN_S, _GATE_UP_S = 0.23, 0.35
 _PENDULUM_S = 0.31  # sqrt(height of the centre of mass / g)
 _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
 _STANDING_POINT = -0.004  # m, centre of mass before the middle of the ankles
 _FORWARD_LOW, _FORWARD_HIGH = -0.05, 0.04  # m about the standing point: where the capture point may lie
 _SIDE_SHARE, _NARROWEST = 0.4, 0.15  # of the feet's distance across, which is at least so wide (m)
-_LARGEST_STAGGER = 0.20  # m
+_LARGEST_STAGGER = 0.16  # m; a longer stand tips slowly over its rear foot
 _FASTEST = 0.25  # m/s; of the closings of a half-trained walker within all these bounds 86 % held, else 46 %
 _LOADED = 100.0  # N
+# A stand beyond these is lost, and steps: capture point (m; m beyond the feet), roll of the pelvis (rad).
+_LEAVES_FORWARD, _LEAVES_SIDE, _TIPS = 0.115, 0.035, 0.14
 _ANKLE_X, _ANKLE_Y = -0.04, 0.09  # m from the pelvis in standing, while there are no sensors
 
 # Gains of the standing controller, rad per m, per m/s, per rad.
@@ -239,8 +242,10 @@ def standing_offset(s, stand, j):  # type: ignore[no-untyped-def]
 @register_jitable
 def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
     """Stop or go; who stops keeps its feet where they are."""
-    off_balance = (np.abs(stand.capture_forward - 0.005) > 0.115 + 0.3 * stand.stagger) | (
-        np.abs(stand.capture_left) > stand.width / 2 + 0.035
+    off_balance = (
+        (np.abs(stand.capture_forward) > _LEAVES_FORWARD)
+        | (np.abs(stand.capture_left) > stand.width / 2 + _LEAVES_SIDE)
+        | (np.abs(s.roll) > _TIPS)
     )
     go = (s.speed_goal > GO_SPEED) | (s.closing & (s.gate < 0.3) & off_balance)
     capturable = (

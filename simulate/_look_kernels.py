@@ -11,6 +11,7 @@ from numba.extending import register_jitable
 
 from footfall.models import body
 from footfall.simulate._elementwise import choose, clip, turned
+from footfall.simulate.state import CREEP
 
 SPEED_SLEW, SLOWING_SHARE = 0.8, 0.9  # m/s2, of the commanded speed upwards; share of it downwards
 TURN_SLEW = 2.0  # rad/s2
@@ -61,6 +62,12 @@ def along_heading(s):  # type: ignore[no-untyped-def]
 
 
 @register_jitable
+def wanted(s):  # type: ignore[no-untyped-def]
+    """Speed to go to (m/s): as commanded, and a creep until the walker has decided to stand."""
+    return choose(s.closing, s.speed_goal, np.maximum(s.speed_goal, CREEP))
+
+
+@register_jitable
 def settle(s):  # type: ignore[no-untyped-def]
     """End a control step: phase, residual and commands move on."""
     s.phase = s.next_phase % 1
@@ -69,7 +76,7 @@ def settle(s):  # type: ignore[no-untyped-def]
     s.fresh = False
     s.heading += s.turn * s.dt
     slew = SPEED_SLEW * s.dt
-    s.speed += clip(s.speed_goal - s.speed, -SLOWING_SHARE * slew, choose(s.gate > 0.3, slew, 0.0))
+    s.speed += clip(wanted(s) - s.speed, -SLOWING_SHARE * slew, choose(s.gate > 0.3, slew, 0.0))
     turn = s.turn + clip(s.turn_goal - s.turn, -TURN_SLEW * s.dt, TURN_SLEW * s.dt)
     s.turn = choose(s.gate < 0.5, 0.0, turn)
     along, across = along_heading(s)
@@ -99,7 +106,7 @@ def observe(s, mirror, sign, own, seen):  # type: ignore[no-untyped-def]
         own[at + i] = np.minimum(s.sensor[_TOUCH + i] / _TOUCH_SCALE, 2.0)
     at += _N_TOUCH
     own[at], own[at + 1] = np.sin(step_angle), np.cos(step_angle)
-    own[at + 2], own[at + 3] = (s.speed - 1.2) * 3, s.speed_goal - s.speed
+    own[at + 2], own[at + 3] = (s.speed - 1.2) * 3, wanted(s) - s.speed
     own[at + 4], own[at + 5] = clip(s.yaw_error, -0.8, 0.8) * 2.5, s.turn * 2
     own[at + 6], own[at + 7] = (s.mean_velocity[0] - s.speed) * 3, s.mean_velocity[1] * 3
     at += 8

@@ -32,7 +32,7 @@ class Difficulty:
 
     Attributes
     ----------
-    speed : (low, high) m/s; turn : rad/s; grade : rise over run
+    speed : (low, high) m/s; slow : share of commands of 0.25 m/s up to that; turn : rad/s; grade : rise over run
     stop : share of commands that ask to stand
     stand, halt : shares of episodes that begin standing, and walking on with the wish to stand
     kick : SD (m/s) of the velocity kicks at each change of command (training only)
@@ -40,7 +40,8 @@ class Difficulty:
     """
 
     level: float = 1.0
-    speed: tuple[float, float] = (0.65, 1.75)
+    speed: tuple[float, float] = (0.65, 1.95)
+    slow: float = 0.12
     turn: float = 1.1
     grade: float = 0.09
     stop: float = 0.3
@@ -119,6 +120,7 @@ class Task:
         d, rng = self.difficulty, self.rng
         low, high = 1.2 + d.level * (d.speed[0] - 1.2), 1.2 + d.level * (d.speed[1] - 1.2)
         speed, kind = rng.uniform(min(low, 1.1), max(high, 1.3), n), rng.random(n)
+        speed = np.where(rng.random(n) < d.slow * d.level, rng.uniform(0.25, d.speed[0], n), speed)
         gentle, sharp = rng.uniform(-0.2, 0.2, n), rng.uniform(-d.turn, d.turn, n)
         turn = np.where(kind < 0.35, 0.0, np.where(kind < 0.6, gentle, sharp)) * d.level
         # The sharper the turn, the slower: 1.3 m/s at 0.3 rad/s, 0.8 m/s at 1.1 rad/s.
@@ -190,7 +192,7 @@ class Task:
         stood = walkers.speed_goal[due] < 0.2
         walkers.speed_goal[due] = np.where(stood, again, speed)
         walkers.turn_goal[due] = np.where(stood, 0.0, turn)
-        self.until_command[due] = rng.uniform(1.5, 5, n) + np.where(walkers.speed_goal[due] < 0.2, 2.0, 0.0)
+        self.until_command[due] = rng.uniform(1.5, 5, n) + np.where(walkers.speed_goal[due] < 0.2, 3.0, 0.0)
         kick = d.kick * d.level * np.where(walkers.gate.value[due] < 0.5, 0.3, 1.0)[:, None]
         walkers.qvel[due, :3] += kick * rng.standard_normal((n, 3)) * [1, 1, 0.3]
 

@@ -20,7 +20,7 @@ WEIGHTS = {
     "speed": 0.08,
     "heading": 0.14,
     "upright": 0.08,
-    "swing": 0.20,
+    "swing": 0.30,
     "still_foot": 0.20,
     "contact": 0.12,
     "load": 0.30,
@@ -30,9 +30,9 @@ WEIGHTS = {
     "jerk": -0.036,
     "action": -0.0135,
     "impact": -0.8,
-    "foot_jolt": -0.20,
+    "foot_jolt": -0.15,
     "dawdle": -0.5,
-    "wide": -0.10,
+    "wide": -0.12,
 }
 # Joint angles to the elevation of the soles, right and left.
 _SOLE = np.stack(
@@ -120,12 +120,12 @@ def reward_terms(
         "jerk": (residual_change**2).sum(1) * (1 + 3 * (1 - gate)),
         "action": (action**2).sum(1),
         "impact": np.clip(touch.sum(-1).max((1, 2)) / _BODY_WEIGHT - 1.2, 0, 1.5),
-        "foot_jolt": np.clip(jolt / 35 - 1, 0, 2.5),
+        "foot_jolt": np.clip(jolt / 50 - 1, 0, 2.5),
         # Wants to stop and still drifts.
         "dawdle": np.where((walkers.speed_goal < 0.2) & (gate > 0.01), np.abs(np.clip(lag, -0.3, 1)), 0.0),
-        # Ankles more than 13 cm apart sideways, or less than 9.
+        # Ankles more than 13 cm apart sideways, or less than 10.
         "wide": gate
-        * (np.clip((separation - 0.13) / 0.05, 0, 2) + np.clip((0.09 - separation) / 0.05, 0, 2)),
+        * (np.clip((separation - 0.13) / 0.05, 0, 2) + np.clip((0.10 - separation) / 0.05, 0, 2)),
     }
 
 

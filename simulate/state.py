@@ -18,6 +18,8 @@ N_SENSOR = body.SENSOR_TOUCH.stop  # what control reads; sensors of the IMU come
 # Residual (rad) for an action of 1.
 ACTION_SCALE = 3.3 * np.array([0.2, 0.2, 0.2] + [0.35, 0.25, 0.25, 0.35, 0.25, 0.15] * 2 + [0.2, 0.2])
 
+CREEP = 0.10  # m/s, of a walker that wishes to stand and does not stand yet
+
 # Places in `varied`: cadence, hip excursion (both relative), step width (m), toe-out of each foot (rad).
 CADENCE, AMPLITUDE, WIDTH, TOE_OUT_RIGHT, TOE_OUT_LEFT = range(5)
 

@@ -26,7 +26,7 @@ _LOOK_AHEAD, _LOOK_AHEAD_S = 0.4, 0.9  # m, and s of the present speed: 1.6 m at
 _BEND_CURVATURE = np.array([0.1, 0.25, 0.4, 0.67, 2.0])
 _BEND_SPEED = np.array([2.0, 1.2, 1.0, 0.85, 0.6])
 # People keep their pace: on straights a walker that is slower than told is told to be faster.
-_PACE_KEEPING_S, _MOST_HASTE, _FASTEST = 6.0, 0.25, 1.75  # s, m/s, m/s
+_PACE_KEEPING_S, _MOST_HASTE, _FASTEST = 6.0, 0.25, 1.95  # s, m/s, m/s
 _LAST_STEP = 0.3  # m, walked after the wish to stop beyond what slowing down takes
 _WALKING = 0.6  # m/s told; slower is starting or stopping
 

@@ -192,7 +192,7 @@ def main() -> None:
         "--out", type=Path, required=True, help="folder of checkpoints and log; resumes from it"
     )
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--samples", type=float, default=9e6, help="control steps to learn from")
+    parser.add_argument("--samples", type=float, default=12e6, help="control steps to learn from")
     parser.add_argument("--generations", type=int, default=160, help="of CMA-ES for the feedback gains")
     parser.add_argument("--threads", type=int, default=2, help="for the physics")
     arguments = parser.parse_args()

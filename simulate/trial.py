@@ -94,7 +94,7 @@ def attempt(
     courses: tuple[Course, ...],
     *,
     seed: int,
-    people: int = 3,
+    people: int = 6,
     seconds: float = 60.0,
     threads: int = 2,
 ) -> Verdict:
