@@ -32,9 +32,10 @@ class Difficulty:
 
     Attributes
     ----------
-    speed : (low, high) m/s; slow : share of commands of 0.25 m/s up to that; turn : rad/s; grade : rise over run
+    speed : (low, high) m/s; slow : share of commands from 0.25 m/s up to the low one
+    turn : rad/s; grade : rise over run
     stop : share of commands that ask to stand
-    stand, halt : shares of episodes that begin standing, and walking on with the wish to stand
+    stand, halt : shares of episodes that begin standing, and walking with the wish to stand
     kick : SD (m/s) of the velocity kicks at each change of command (training only)
     variability : of the gait, up to this many times that of people
     """
