@@ -18,7 +18,7 @@ from footfall.models.subject import SHOES, SUBJECTS, Subject
 from footfall.scenarios.path import Path, PathSpec, build_path
 from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height
 from footfall.simulate.journey import PHYSICS_STEP, Plan
-from footfall.simulate.steer import Stop
+from footfall.simulate.steer import Pace, Stop
 from footfall.simulate.truth import divisor
 from footfall.toml import Strict, read_toml
 
@@ -63,6 +63,13 @@ class StopTable(Strict):
 
     at_m: float = Field(gt=0)
     for_s: float = Field(gt=0, le=3600)
+
+
+class PaceTable(Strict):
+    """A change of pace on the way."""
+
+    at_m: float = Field(gt=0)
+    m_s: float = Field(ge=0.7, le=1.7)
 
 
 class DisturbanceTable(Strict):
@@ -110,6 +117,7 @@ class ScenarioFile(Strict):
     path: PathSpec
     gait: GaitTable
     stops: Annotated[tuple[StopTable, ...], Field(strict=False)] = ()
+    paces: Annotated[tuple[PaceTable, ...], Field(strict=False)] = ()
     disturbance: DisturbanceTable | None = None
     temperature: TemperatureTable
     sensor: SensorTable
@@ -129,7 +137,7 @@ class Scenario:
     cell : m, of the terrain's grid
     subjects : used in turn from walk to walk
     stops : pauses, in walking order
-    pace : m/s, asked of the walker on straights
+    pace : m/s, asked of the walker on straights; paces : changes of it, in walking order
     variability : of the gait, 1 = that of people; action_noise : SD of the noise on the walker's actions
     wander, wander_time : m and s, slow lateral wander of the steering's aim
     push, push_every : N s and s, pushes at the trunk; 0: none
@@ -149,6 +157,7 @@ class Scenario:
     subjects: tuple[Subject, ...]
     stops: tuple[Stop, ...]
     pace: float
+    paces: tuple[Pace, ...]
     variability: float
     action_noise: float
     wander: float
@@ -182,6 +191,7 @@ class Scenario:
             mount=MOUNTS[self.mount],
             ground=self.terrain,
             pace=self.pace,
+            paces=self.paces,
             stops=self.stops,
             variability=self.variability,
             action_noise=self.action_noise,
@@ -240,6 +250,7 @@ def _scenario(file: File, content: ScenarioFile) -> Scenario:
         subjects=tuple(_subject(i, entry) for i, entry in enumerate(content.subjects)),
         stops=_stops(content.stops, path.route.length),
         pace=gait.pace_m_s,
+        paces=_paces(content.paces, path.route.length),
         variability=gait.variability,
         action_noise=gait.action_noise,
         wander=gait.wander_m,
@@ -270,6 +281,18 @@ def _stops(tables: tuple[StopTable, ...], length: float) -> tuple[Stop, ...]:
                 f"before the path's end at {length:g} m"
             )
     return tuple(Stop(table.at_m, table.for_s) for table in tables)
+
+
+def _paces(tables: tuple[PaceTable, ...], length: float) -> tuple[Pace, ...]:
+    """In walking order, and on the path."""
+    at = [0.0, *(table.at_m for table in tables)]
+    for i, (before, after) in enumerate(pairwise(at)):
+        if not before < after < length:
+            raise InputError(
+                f"paces.{i}.at_m = {after:g}: expected beyond the change (or the start) before it at "
+                f"{before:g} m and before the path's end at {length:g} m"
+            )
+    return tuple(Pace(table.at_m, table.m_s) for table in tables)
 
 
 def _subject(i: int, entry: str | SubjectTable) -> Subject:

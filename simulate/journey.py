@@ -23,7 +23,7 @@ from footfall.models.subject import Subject
 from footfall.simulate.disturbance import Push, Pusher, pushes
 from footfall.simulate.ground import ground_lookup
 from footfall.simulate.route import Route
-from footfall.simulate.steer import Pursuit, Stop, StrayError
+from footfall.simulate.steer import Pace, Pursuit, Stop, StrayError, pace_along
 from footfall.simulate.truth import ImuTruth, at_rest, divisor, imu_truth, runs
 from footfall.simulate.walk import TrueFootfalls, Walk
 from footfall.simulate.walkers import N_ACTION, Trace, Walkers
@@ -51,7 +51,7 @@ class Plan:
     ----------
     name : of the scenario, for messages and provenance
     route : where to walk; ground : level when None
-    pace : m/s commanded on straights
+    pace : m/s commanded on straights; paces : changes of it on the way, in walking order
     stops : pauses on the way, in walking order
     variability : of the gait, 1 = that of people; action_noise : SD of the noise on the policy's action
     wander, wander_time : m and s, slow lateral wander of the aim
@@ -67,6 +67,7 @@ class Plan:
     mount: Mount = field(default_factory=Mount)
     ground: Ground | None = None
     pace: float = 1.3
+    paces: tuple[Pace, ...] = ()
     stops: tuple[Stop, ...] = ()
     variability: float = 1.0
     action_noise: float = 0.0
@@ -102,6 +103,7 @@ def _shrunk(plan: Plan) -> Plan:
         route=small,
         ground=ground,
         pace=plan.pace / t,
+        paces=tuple(Pace(pace.distance / s, pace.speed / t) for pace in plan.paces),
         stops=tuple(Stop(stop.distance / s, stop.duration / t) for stop in plan.stops),
         wander=plan.wander / s,
         wander_time=plan.wander_time / t,
@@ -166,7 +168,7 @@ class Outing:
         last = Stop(route.length, END_STAND_S / subject.time_scale)
         self._pursuit = Pursuit(
             route,
-            small.pace,
+            pace_along(route, small.pace, small.paces),
             (first, *small.stops, last),
             wander=small.wander,
             wander_time=small.wander_time,
@@ -365,6 +367,7 @@ def walk(
             "calibration_s": plan.calibration,
             "policy": policy.digest,
             "ends": "standing" if record.stands else "in mid-gait",
+            **({"paces_m_m_s": [[pace.distance, pace.speed] for pace in plan.paces]} if plan.paces else {}),
             **_told_pushes(plan, t[-1]),
             "versions": versions(),
         },

@@ -43,8 +43,24 @@ class Stop:
     duration: float
 
 
-def speed_limits(route: Route, pace: float) -> np.ndarray:
-    """(n,) m/s at each sample of the route: the pace, less in bends and before them."""
+@dataclass(frozen=True)
+class Pace:
+    """From `distance` (m) along the route on, walk at `speed` (m/s)."""
+
+    distance: float
+    speed: float
+
+
+def pace_along(route: Route, pace: float, changes: tuple[Pace, ...]) -> np.ndarray:
+    """(n,) m/s at each sample of the route: the first pace, and its changes in walking order."""
+    speeds = np.array([pace, *(change.speed for change in changes)])
+    at = [change.distance for change in changes]
+    along: np.ndarray = speeds[np.searchsorted(at, route.s, side="right")]
+    return along
+
+
+def speed_limits(route: Route, pace: np.ndarray) -> np.ndarray:
+    """(n,) m/s at each sample of the route: the pace there (n,), less in bends and before what is slower."""
     turning = np.abs(np.diff(route.heading, append=route.heading[-1]))
     spacing = np.diff(route.s, append=route.s[-1] + 1.0)
     # An un-rounded corner is a jump of the heading: as sharp as if taken over half a metre.
@@ -60,7 +76,7 @@ class Pursuit:
 
     Parameters
     ----------
-    pace : m/s on straights
+    pace : m/s on straights, or (n,) at each sample of the route
     stops : where to stand and for how long, in walking order
     wander : m, standard deviation of the slow lateral wander of the aim
     wander_time : s, its time constant (first-order Gauss-Markov)
@@ -71,7 +87,7 @@ class Pursuit:
     def __init__(
         self,
         route: Route,
-        pace: float,
+        pace: float | np.ndarray,
         stops: tuple[Stop, ...],
         *,
         wander: float,
@@ -82,7 +98,8 @@ class Pursuit:
         self.route, self.rng, self.dt = route, rng, dt
         self.spacing = float(route.s[1] - route.s[0])
         self._line = np.column_stack([route.x, route.y, route.heading])
-        self._limit, self._pace = speed_limits(route, pace), pace
+        self._pace = np.broadcast_to(pace, route.s.shape)
+        self._limit = speed_limits(route, self._pace)
         self._shortfall = 0.0  # m/s, of what is walked against what was told, slowly averaged
         self._last = (float(route.x[0]), float(route.y[0]))
         self._stops = list(stops)
@@ -137,7 +154,7 @@ class Pursuit:
 
     def _speed(self, speed: float, standing: bool) -> float:
         wanted = float(self._limit[self._row])
-        if wanted >= self._pace:
+        if wanted >= self._pace[self._row]:
             haste = min(max(self._shortfall, -_MOST_HASTE), _MOST_HASTE)
             wanted = min(wanted + haste, max(_FASTEST, wanted))
         if not self._stops:

@@ -13,7 +13,8 @@ from footfall.models.subject import SUBJECTS, Subject
 from footfall.pdr.strapdown import integrate
 from footfall.simulate.cache import cached_walk, plan_key
 from footfall.simulate.journey import STAND_S, FallError, Plan, walk
-from footfall.simulate.steer import Stop
+from footfall.simulate.route import Route
+from footfall.simulate.steer import Pace, Stop
 from footfall.simulate.truth import runs
 from footfall.simulate.walk import Walk, footfalls_path, read_walk, write_walk
 
@@ -72,6 +73,19 @@ def test_it_pauses_where_it_is_asked_to(short_plan: Plan) -> None:
     assert along == pytest.approx(12.0, abs=1.2)
     still = slice(middle, middle + 200)
     assert np.degrees(np.linalg.norm(paused.gyro[still], axis=1)).max() < 1.0
+
+
+def test_it_changes_its_pace_where_it_is_asked_to(short_plan: Plan) -> None:
+    n = 1201
+    s, nil = np.arange(n) * 0.05, np.zeros(n)
+    plan = replace(
+        short_plan, route=Route(s, s, nil, nil, nil, nil), pace=0.9, paces=(Pace(25.0, 1.5),), calibration=1.0
+    )
+    falls = walk(plan).footfalls
+    x = falls.position[:, 0]
+    for begin, end, pace in ((6.0, 23.0, 0.9), (32.0, 55.0, 1.5)):
+        there = (x > begin) & (x < end)
+        assert np.ptp(x[there]) / np.ptp(falls.t[there]) == pytest.approx(pace, rel=0.06)
 
 
 def test_a_fall_after_the_path_spoils_the_stand_and_not_the_walk(short_plan: Plan, short_walk: Walk) -> None:

@@ -115,6 +115,12 @@ def test_a_plan_holds_what_the_file_says():
     assert scenario.temperature == TemperatureProfile.step(20.0, -5.0)
 
 
+def test_a_plan_holds_pauses_and_changes_of_pace():
+    plan = load_scenario("errands").plan(0)
+    assert [stop.distance for stop in plan.stops] == [60.0, 210.0, 330.0, 560.0]
+    assert [(pace.distance, pace.speed) for pace in plan.paces] == [(215.0, 1.5), (330.0, 1.1), (440.0, 1.3)]
+
+
 def test_level_scenarios_have_no_terrain():
     assert load_scenario("turning").plan(0).ground is None
 
@@ -200,6 +206,17 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
         ("[gait]", "[gate]", r"key 'gait' is missing|unknown key 'gate'"),
         ('description = "mine"', "", r"key 'description' is missing"),
         ("pace_m_s = 1.2", "pace_m_s = 1.8", r"gait.pace_m_s = 1.8: .* less than or equal to 1.7"),
+        ("[path]", "paces = [{ at_m = 20.0, m_s = 2.5 }]\n[path]", r"paces.0.m_s = 2.5: .* equal to 1.7"),
+        (
+            "[path]",
+            "paces = [{ at_m = 20.0, m_s = 1.5 }, { at_m = 10.0, m_s = 1.0 }]\n[path]",
+            r"paces.1.at_m = 10: expected beyond the change \(or the start\) before it at 20 m",
+        ),
+        (
+            "[path]",
+            "paces = [{ at_m = 900.0, m_s = 1.5 }]\n[path]",
+            r"paces.0.at_m = 900: expected .* end at",
+        ),
         ("pace_m_s = 1.2", "pace_m_s = nan", r"gait.pace_m_s = nan: .* finite"),
         ("pace_m_s = 1.2", 'pace_m_s = "1.2"', r"gait.pace_m_s = '1.2': .* valid number"),
         ("length_m = 50 ", "length_m = -50 ", r"path.elements.0\S* = -50(.0)?: .* greater than 0"),

@@ -9,9 +9,11 @@ from footfall.simulate.steer import (
     STOPPING,
     STRAY_LIMIT,
     TURN_LIMIT,
+    Pace,
     Pursuit,
     Stop,
     StrayError,
+    pace_along,
     speed_limits,
 )
 
@@ -83,12 +85,29 @@ def test_an_unrounded_corner_is_taken_slowly_and_closely() -> None:
 
 def test_speed_limits_brake_in_time_and_never_exceed_the_pace() -> None:
     corner = route_of(np.concatenate([np.zeros(400), np.full(78, 0.4), np.zeros(400)]))
-    limit = speed_limits(corner, 1.4)
+    limit = speed_limits(corner, np.full(len(corner.s), 1.4))
     assert limit.max() == 1.4
     assert limit[400:478].max() <= 1.0
     slowing = np.diff(limit[:401] ** 2) / np.diff(corner.s[:401]) / 2
     assert slowing.min() > -SLOWING - 1e-9
-    assert speed_limits(route_of(np.full(400, 0.05)), 1.4).min() == 1.4
+    assert speed_limits(route_of(np.full(400, 0.05)), np.full(400, 1.4)).min() == 1.4
+
+
+def test_paces_change_where_they_are_told_and_slowing_down_begins_before() -> None:
+    street = route_of(np.zeros(2001))
+    pace = pace_along(street, 1.0, (Pace(30.0, 1.6), Pace(70.0, 0.8)))
+    at = np.searchsorted(street.s, [0.0, 29.9, 30.1, 69.9, 70.1, 100.0])
+    np.testing.assert_array_equal(pace[at], [1.0, 1.0, 1.6, 1.6, 0.8, 0.8])
+    limit = speed_limits(street, pace)
+    assert (limit <= pace).all()
+    early = street.s > 70 - (1.6**2 - 0.8**2) / (2 * SLOWING)
+    np.testing.assert_array_equal(limit[~early], pace[~early])
+    rng = np.random.default_rng(0)
+    pursuit = Pursuit(street, pace, (), wander=0.0, wander_time=4.0, dt=DT, rng=rng)
+    points, _, speeds = follow(pursuit)
+    x = points[:, 0]
+    for begin, end, told in ((5, 29, 1.0), (45, 67, 1.6), (75, 95, 0.8)):
+        assert speeds[(x > begin) & (x < end)] == pytest.approx(told, abs=0.02)
 
 
 @pytest.mark.parametrize("share", [0.9, 1.05])
