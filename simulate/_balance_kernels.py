@@ -25,7 +25,7 @@ from footfall.simulate.state import ACTION_SCALE, CREEP
 FOOT_OFFSET = 0.075  # m from the stance foot to the pelvis, sideways, at which no correction is made
 GO_SPEED = 0.2  # m/s; a commanded speed above it is a wish to walk
 _RESIDUAL_LIMIT = 2.0  # of action scale, feedback included
-_BRAKE = 0.2  # rad per m/s
+_SLOW = 0.8  # m/s; below it the gains go over to those of slow walking, which they are at 0
 _STOP_SPEED = CREEP + 0.03
 _GATE_DOWN_S, _GATE_UP_S = 0.23, 0.35
 _PENDULUM_S = 0.31  # sqrt(height of the centre of mass / g)
@@ -75,8 +75,7 @@ class Balance(NamedTuple):
     """What the feedback looks at, in the heading frame and mirrored to right stance.
 
     pitch (nose down positive) and roll are relative to gravity, yaw_error to the commanded heading;
-    `foot_y` is the pelvis relative to the stance foot (m); `step_phase` runs 0..1 over a step; `speed` is the
-    commanded one.
+    `foot_y` is the pelvis relative to the stance foot (m); `step_phase` runs 0..1 over a step.
     """
 
     pitch: Any
@@ -92,7 +91,6 @@ class Balance(NamedTuple):
     mean_lateral_velocity: Any
     foot_y: Any
     step_phase: Any
-    speed: Any
 
 
 class Stand(NamedTuple):
@@ -137,7 +135,6 @@ def balance_of(s):  # type: ignore[no-untyped-def]
         mean_lateral_velocity=s.mean_velocity[1] * side,
         foot_y=choose(s.fresh, FOOT_OFFSET, aside * side),
         step_phase=(s.phase * 2) % 1,
-        speed=s.speed,
     )
 
 
@@ -149,17 +146,12 @@ def feedback(g, b, out):  # type: ignore[no-untyped-def]
     """
     swing = clip((b.step_phase - 0.2) / 0.15, 0.0, 1.0)  # after toe-off of the other foot
     late = clip((b.step_phase - 0.5) / 0.2, 0.0, 1.0)
-    # Walking slowly, what drives the body on (push-off, lean, long steps) fades and the swing leg brakes.
-    slow = clip(1 - b.speed / 0.8, 0.0, 1.0)
-    going = 1 - slow
     for j in range(N_SERVOS):
         out[j] = 0.0
     out[_LUMBAR_ROLL] = -g.torso_roll * b.roll - g.torso_roll_rate * b.roll_rate
-    out[_LUMBAR_PITCH] = (
-        -g.torso_pitch * b.pitch - g.torso_pitch_rate * b.pitch_rate + g.torso_pitch_offset * going
-    )
+    out[_LUMBAR_PITCH] = -g.torso_pitch * b.pitch - g.torso_pitch_rate * b.pitch_rate + g.torso_pitch_offset
     out[_STANCE_HIP] = (
-        -g.stance_hip_pitch * b.pitch - g.stance_hip_pitch_rate * b.pitch_rate + g.stance_hip_offset * going
+        -g.stance_hip_pitch * b.pitch - g.stance_hip_pitch_rate * b.pitch_rate + g.stance_hip_offset
     )
     out[_STANCE_SIDE] = (
         g.stance_hip_roll * b.roll + g.stance_hip_roll_rate * b.roll_rate + g.stance_adduction_offset
@@ -167,7 +159,7 @@ def feedback(g, b, out):  # type: ignore[no-untyped-def]
     out[_STANCE_YAW] = g.stance_yaw * b.yaw_error + g.stance_yaw_rate * (b.yaw_rate - b.turn_rate)
     out[_STANCE_KNEE] = g.stance_knee_offset
     out[_STANCE_ANKLE] = (
-        -late * g.push_off * going
+        -late * g.push_off
         + late * g.push_off_speed * b.speed_error
         + g.ankle_speed * (1 - late) * b.speed_error
     )
@@ -178,8 +170,7 @@ def feedback(g, b, out):  # type: ignore[no-untyped-def]
         g.place_pitch * b.pitch
         + g.place_speed * b.speed_error
         + g.place_mean_speed * b.mean_speed_error
-        + g.place_offset * going
-        + _BRAKE * slow * clip(b.speed_error, -0.2, 0.9)
+        + g.place_offset
     )
     out[_SWING_SIDE] = swing * (
         g.width_roll * b.roll
@@ -273,12 +264,16 @@ def open_gate(s):  # type: ignore[no-untyped-def]
 
 
 @register_jitable
-def act(s, g, action):  # type: ignore[no-untyped-def]
+def act(s, walking_gains, slow_gains, action):  # type: ignore[no-untyped-def]
     """Decide, and correct the gait by feedback and `action` (17,), mirrored as the observation was."""
     balance, stand = balance_of(s), stand_of(s)
     decide(s, stand, balance.step_phase)
     open_gate(s)
-    feedback(g, balance, s.feedback)
+    feedback(walking_gains, balance, s.feedback)
+    feedback(slow_gains, balance, s.slow_feedback)
+    slow = clip(1 - s.speed / _SLOW, 0.0, 1.0)
+    for j in range(N_SERVOS):
+        s.feedback[j] += slow * (s.slow_feedback[j] - s.feedback[j])
     # A quiet stand is left to the standing controller, which keeps it motionless.
     off = np.sqrt(stand.capture_forward**2 + stand.capture_left**2)
     policy = s.gate_before + (1 - s.gate_before) * _HELP * clip(off / _UNREST - 1, 0.0, 1.0)
@@ -293,6 +288,6 @@ def act(s, g, action):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def act_all(state, gains, action):  # type: ignore[no-untyped-def]
-    """`act` of every walker; one row of gains serves all."""
+    """`act` of every walker with its gains (n, 2), for walking and for slow walking; one row serves all."""
     for i in range(len(state)):
-        act(state[i], gains[i % len(gains)], action[i])
+        act(state[i], gains[i % len(gains), 0], gains[i % len(gains), 1], action[i])

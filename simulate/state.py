@@ -48,6 +48,7 @@ WALKER = np.dtype(
         ("residual", float, body.N_SERVOS),  # feedback and policy as applied, in units of ACTION_SCALE
         ("next_residual", float, body.N_SERVOS),
         ("feedback", float, body.N_SERVOS),  # rad, for right stance
+        ("slow_feedback", float, body.N_SERVOS),  # the part of it that slow walking has
         ("level", float),  # of variability
         ("slow", float),  # part of the cadence
         ("asymmetry", float),

@@ -144,10 +144,10 @@ def test_feedback_is_affine_in_its_gains(values: list[float]) -> None:
 
     def offsets(gains: np.ndarray) -> np.ndarray:
         out = np.empty((N_SERVOS, 1))
-        feedback(Columns(gain_records(gains)), balance, out)
+        feedback(Columns(gain_records(np.stack([gains, gains]))[:, 0]), balance, out)
         return out
 
-    first, second = np.array(GAIN_START), np.linspace(-1, 1, len(Gains._fields))
+    first, second = np.array(GAIN_START[0]), np.linspace(-1, 1, len(Gains._fields))
     together = offsets(first + second) + offsets(0 * first)
     np.testing.assert_allclose(together, offsets(first) + offsets(second), atol=1e-12)
 
@@ -233,7 +233,7 @@ def test_a_control_step_that_is_no_multiple_of_the_physics_is_refused() -> None:
 def test_the_shipped_policy_fits_the_walker() -> None:
     policy = stock_policy()
     assert policy(np.zeros((3, N_OBSERVATION))).shape == (3, N_ACTION)
-    assert policy.feedback_gains.shape == (32,)
+    assert policy.feedback_gains.shape == (2, 32)
     assert {"seed", "samples"} <= set(policy.meta)
 
 
