@@ -16,6 +16,8 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.models._policy_kernels import perceptron
 
+_GAINS = (2, 32)  # of the balance feedback: simulate.feedback
+
 
 @dataclass(frozen=True)
 class Policy:
@@ -77,6 +79,8 @@ def load_policy(path: str | Path) -> Policy:
                 tuple(data[f"{name}_{i}"] for i in range(layers)) for name in ("weight", "bias")
             )
             gains = data["feedback_gains"]
+            if gains.shape != _GAINS:
+                raise ValueError(f"feedback gains {gains.shape}, expected {_GAINS}")
             meta = json.loads(str(data["meta"]))
     except (OSError, KeyError, ValueError) as error:
         raise InputError(f"{source}: not a walker policy ({error})") from None

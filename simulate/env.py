@@ -19,6 +19,7 @@ from footfall.errors import InputError
 from footfall.models.body import build_body
 from footfall.models.policy import stock_policy
 from footfall.models.subject import Build, Habits
+from footfall.simulate.feedback import GAIN_SHAPE
 from footfall.simulate.observation import LIMIT, N_OBSERVATION
 from footfall.simulate.reward import reward_terms, total
 from footfall.simulate.walkers import N_ACTION, Trace, Walkers
@@ -200,8 +201,19 @@ class Task:
 
 
 def balance_gains(asked: np.ndarray | None) -> np.ndarray:
-    """(2, 32) gains of the balance feedback under the action: as asked, or the shipped policy's."""
-    return stock_policy().feedback_gains if asked is None else np.asarray(asked, dtype=float)
+    """(2, 32) gains of the balance feedback under the action: as asked, or the shipped policy's.
+
+    Raises
+    ------
+    InputError
+        Gains of another shape, or not finite.
+    """
+    if asked is None:
+        return stock_policy().feedback_gains
+    gains = np.asarray(asked, dtype=float)
+    if gains.shape != GAIN_SHAPE or not np.isfinite(gains).all():
+        raise InputError(f"feedback_gains {gains.shape}: expected {GAIN_SHAPE}, finite")
+    return gains
 
 
 OBSERVATION_SPACE = gym.spaces.Box(-LIMIT, LIMIT, (N_OBSERVATION,), np.float32)

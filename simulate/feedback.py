@@ -1,7 +1,7 @@
 """Gains of the balance feedback under the learned residual, and the mirror image of servos and joints.
 
-The feedback itself is `_balance_kernels.feedback`. There are two sets of gains, of walking and of slow walking,
-between which it goes over; both are tuned by CMA-ES before the policy is trained on top of them.
+The feedback itself is `_balance_kernels.feedback`. There are two sets of gains, for walking and for slow
+walking, which go over into each other; both are tuned by CMA-ES before the policy is trained on top of them.
 """
 
 from __future__ import annotations
@@ -67,13 +67,13 @@ class Gains(NamedTuple):
 GAIN_START = (
     Gains(
         -0.39, 0.13, 0.28, 0.30, 0.06, -0.01, -0.02, 0.42, -0.07, -0.25, 0.06, 0.03, 0.07, -0.12,
-        -0.35, -0.12, 0.28,
-        -0.05, 0.10, 1.74, -0.79, 0.27, 0.16, 1.19, 0.20, 0.90, 0.02, 0.11, -0.25, -0.11, -0.25, 0.21,
+        -0.35, -0.12, 0.28, -0.05, 0.10, 1.74, -0.79, 0.27, 0.16, 1.19, 0.20, 0.90,
+        0.02, 0.11, -0.25, -0.11, -0.25, 0.21,
     ),
     Gains(
         0.49, 0.15, -0.02, 0.21, -0.11, 0.00, 0.40, 0.32, -0.02, -0.11, 0.26, -0.03, 0.24, 0.00,
-        -0.68, -0.51, -0.28,
-        0.51, 0.05, 2.63, -0.01, 0.14, 0.21, 1.79, 0.14, 1.02, 0.06, 0.17, 0.23, -0.15, -0.06, 0.22,
+        -0.68, -0.51, -0.28, 0.51, 0.05, 2.63, -0.01, 0.14, 0.21, 1.79, 0.14, 1.02,
+        0.06, 0.17, 0.23, -0.15, -0.06, 0.22,
     ),
 )  # fmt: skip
 GAIN_SCALE = Gains(
@@ -81,10 +81,11 @@ GAIN_SCALE = Gains(
     0.5, 0.2, 0.2, 0.1, 0.5, 0.2, 0.3, 0.05, 0.3, 0.15, 0.2, 0.15, 0.06,
 )  # fmt: skip
 
+GAIN_SHAPE = (2, len(Gains._fields))
 _RECORD = np.dtype([(name, float) for name in Gains._fields])
 
 
 def gain_records(gains: np.ndarray) -> np.ndarray:
     """(n, 2, 32) or (2, 32) -> (n, 2) or (1, 2) records whose fields are those of `Gains`."""
-    rows = np.ascontiguousarray(gains, dtype=float).reshape(-1, 2, len(Gains._fields))
+    rows = np.ascontiguousarray(gains, dtype=float).reshape(-1, *GAIN_SHAPE)
     return rows.view(_RECORD)[:, :, 0]

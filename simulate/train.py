@@ -86,7 +86,8 @@ def tune_part(
         search.tell(candidates, list(-(0.7 * score.mean(1) + 0.3 * score.min(1))))
         if generation % 20 == 0:
             print(
-                f"gains at {speed[0]} to {speed[1]} m/s: generation {generation}, mean life {lived.mean() * CONTROL_INTERVAL:.2f} s",
+                f"gains at {speed[0]} to {speed[1]} m/s: generation {generation}, "
+                f"mean life {lived.mean() * CONTROL_INTERVAL:.2f} s",
                 flush=True,
             )
     task.walkers.close()

@@ -1,5 +1,8 @@
 """The walker: mirror symmetry, no external force, falls and steering."""
 
+from importlib.resources import files
+from pathlib import Path
+
 import mujoco
 import numpy as np
 import pytest
@@ -7,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from footfall.conventions import GRAVITY
+from footfall.errors import InputError
 from footfall.models.body import (
     N_SERVOS,
     SENSOR_FOOT_RATE,
@@ -17,7 +21,8 @@ from footfall.models.policy import load_policy, stock_policy
 from footfall.models.subject import Build, Habits
 from footfall.simulate._balance_kernels import Balance, feedback
 from footfall.simulate._variability_kernels import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD
-from footfall.simulate.feedback import GAIN_START, SERVO_MIRROR, SERVO_SIGN, Gains, gain_records
+from footfall.simulate.env import balance_gains
+from footfall.simulate.feedback import GAIN_SHAPE, GAIN_START, SERVO_MIRROR, SERVO_SIGN, Gains, gain_records
 from footfall.simulate.observation import MIRROR, N_OBSERVATION, SIGN
 from footfall.simulate.state import WALKER, Columns
 from footfall.simulate.variability import Variability
@@ -99,7 +104,7 @@ def test_the_policy_walks() -> None:
 
 def test_without_a_policy_it_falls_and_says_so() -> None:
     group = walkers()
-    group.gains = np.zeros(32)
+    group.gains = np.zeros(GAIN_SHAPE)
     for _ in range(200):
         group.step(np.zeros((1, N_ACTION)))
         if group.fallen()[0]:
@@ -237,6 +242,19 @@ def test_the_shipped_policy_fits_the_walker() -> None:
     assert {"seed", "samples"} <= set(policy.meta)
 
 
+def test_weights_and_gains_of_another_walker_are_refused(tmp_path: Path) -> None:
+    source = Path(str(files("footfall.models") / "weights" / "walker.npz"))
+    with np.load(source) as data:
+        arrays = dict(data)
+    assert arrays["feedback_gains"].shape == GAIN_SHAPE
+    arrays["feedback_gains"] = arrays["feedback_gains"][0]
+    np.savez(tmp_path / "old.npz", **arrays)
+    with pytest.raises(InputError, match=r"old.npz: not a walker policy \(feedback gains \(32,\), expected"):
+        load_policy(tmp_path / "old.npz")
+    with pytest.raises(InputError, match=r"feedback_gains \(32,\): expected \(2, 32\)"):
+        balance_gains(np.zeros(32))
+
+
 def test_observations_and_actions_of_another_layout_are_refused() -> None:
     with pytest.raises(ValueError, match=r"observations \(1, 7\), expected"):
         stock_policy()(np.zeros((1, 7)))
@@ -244,9 +262,7 @@ def test_observations_and_actions_of_another_layout_are_refused() -> None:
         walkers(2).step(np.zeros((2, 3)))
 
 
-def test_a_file_that_is_no_policy_is_refused(tmp_path) -> None:  # type: ignore[no-untyped-def]
-    from footfall.errors import InputError
-
+def test_a_file_that_is_no_policy_is_refused(tmp_path: Path) -> None:
     bad = tmp_path / "weights.npz"
     np.savez(bad, nothing=np.zeros(3))
     with pytest.raises(InputError, match="not a walker policy"):
