@@ -16,7 +16,7 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.models._policy_kernels import perceptron
 
-_GAINS = (2, 32)  # of the balance feedback: simulate.feedback
+_GAINS = (32,)  # of the balance feedback: simulate.feedback
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Policy:
     ----------
     weights, biases : of each layer, in single precision as they come from training; ELU between the layers,
         all in double precision
-    feedback_gains : (2, 32) of the balance feedback that the policy was trained on top of
+    feedback_gains : (32,) of the balance feedback that the policy was trained on top of
     digest : hash of the weights, part of every walk's provenance
     meta : how they were made (command, seed, samples)
     """

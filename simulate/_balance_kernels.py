@@ -4,7 +4,7 @@ Laws in terms of one walker `s` (see state.py); the face is walkers.py. Foot pla
 SIMBICON's and Raibert's terms, written for right stance: left stance is its mirror image. A standing
 controller (ankles and hips about the pose in which the feet stopped) is blended with the gait by a gate: 0
 stands, 1 walks. Stopping waits for a step from which the body can be captured (its extrapolated centre of
-mass stays over the feet); until then it creeps on, since a body that steps on the spot drifts backwards. A
+mass stays over the feet); until then it steps on the spot, and creeps on where it would drift backwards. A
 stand that loses its balance steps.
 """
 
@@ -25,19 +25,17 @@ from footfall.simulate.state import ACTION_SCALE, CREEP
 FOOT_OFFSET = 0.075  # m from the stance foot to the pelvis, sideways, at which no correction is made
 GO_SPEED = 0.2  # m/s; a commanded speed above it is a wish to walk
 _RESIDUAL_LIMIT = 2.0  # of action scale, feedback included
-_SLOW = 0.8  # m/s; below it the gains go over to those of slow walking, which they are at 0
-_STOP_SPEED = CREEP + 0.03
+_BRAKE = 0.2  # rad per m/s
+_STOP_SPEED = CREEP + 0.05
 _GATE_DOWN_S, _GATE_UP_S = 0.23, 0.35
 _PENDULUM_S = 0.31  # sqrt(height of the centre of mass / g)
 _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
 _STANDING_POINT = -0.004  # m, centre of mass before the middle of the ankles
 _FORWARD_LOW, _FORWARD_HIGH = -0.05, 0.04  # m about the standing point: where the capture point may lie
 _SIDE_SHARE, _NARROWEST = 0.4, 0.15  # of the feet's distance across, which is at least so wide (m)
-_LARGEST_STAGGER = 0.16  # m; a longer stand tips slowly over its rear foot
+_LARGEST_STAGGER = 0.17  # m; a longer stand tips slowly over its rear foot
 _FASTEST = 0.25  # m/s; of the closings of a half-trained walker within all these bounds 86 % held, else 46 %
 _LOADED = 100.0  # N
-# A stand beyond these is lost, and steps: capture point (m; m beyond the feet), roll of the pelvis (rad).
-_LEAVES_FORWARD, _LEAVES_SIDE, _TIPS = 0.115, 0.035, 0.14
 _ANKLE_X, _ANKLE_Y = -0.04, 0.09  # m from the pelvis in standing, while there are no sensors
 
 # Gains of the standing controller, rad per m, per m/s, per rad.
@@ -75,7 +73,8 @@ class Balance(NamedTuple):
     """What the feedback looks at, in the heading frame and mirrored to right stance.
 
     pitch (nose down positive) and roll are relative to gravity, yaw_error to the commanded heading;
-    `foot_y` is the pelvis relative to the stance foot (m); `step_phase` runs 0..1 over a step.
+    `foot_y` is the pelvis relative to the stance foot (m); `step_phase` runs 0..1 over a step; `speed` is the
+    commanded one.
     """
 
     pitch: Any
@@ -91,6 +90,7 @@ class Balance(NamedTuple):
     mean_lateral_velocity: Any
     foot_y: Any
     step_phase: Any
+    speed: Any
 
 
 class Stand(NamedTuple):
@@ -135,6 +135,7 @@ def balance_of(s):  # type: ignore[no-untyped-def]
         mean_lateral_velocity=s.mean_velocity[1] * side,
         foot_y=choose(s.fresh, FOOT_OFFSET, aside * side),
         step_phase=(s.phase * 2) % 1,
+        speed=s.speed,
     )
 
 
@@ -146,12 +147,17 @@ def feedback(g, b, out):  # type: ignore[no-untyped-def]
     """
     swing = clip((b.step_phase - 0.2) / 0.15, 0.0, 1.0)  # after toe-off of the other foot
     late = clip((b.step_phase - 0.5) / 0.2, 0.0, 1.0)
+    # Walking slowly, what drives the body on (push-off, lean, long steps) fades and the swing leg brakes.
+    slow = clip(1 - b.speed / 0.8, 0.0, 1.0)
+    going = 1 - slow
     for j in range(N_SERVOS):
         out[j] = 0.0
     out[_LUMBAR_ROLL] = -g.torso_roll * b.roll - g.torso_roll_rate * b.roll_rate
-    out[_LUMBAR_PITCH] = -g.torso_pitch * b.pitch - g.torso_pitch_rate * b.pitch_rate + g.torso_pitch_offset
+    out[_LUMBAR_PITCH] = (
+        -g.torso_pitch * b.pitch - g.torso_pitch_rate * b.pitch_rate + g.torso_pitch_offset * going
+    )
     out[_STANCE_HIP] = (
-        -g.stance_hip_pitch * b.pitch - g.stance_hip_pitch_rate * b.pitch_rate + g.stance_hip_offset
+        -g.stance_hip_pitch * b.pitch - g.stance_hip_pitch_rate * b.pitch_rate + g.stance_hip_offset * going
     )
     out[_STANCE_SIDE] = (
         g.stance_hip_roll * b.roll + g.stance_hip_roll_rate * b.roll_rate + g.stance_adduction_offset
@@ -159,7 +165,7 @@ def feedback(g, b, out):  # type: ignore[no-untyped-def]
     out[_STANCE_YAW] = g.stance_yaw * b.yaw_error + g.stance_yaw_rate * (b.yaw_rate - b.turn_rate)
     out[_STANCE_KNEE] = g.stance_knee_offset
     out[_STANCE_ANKLE] = (
-        -late * g.push_off
+        -late * g.push_off * going
         + late * g.push_off_speed * b.speed_error
         + g.ankle_speed * (1 - late) * b.speed_error
     )
@@ -170,7 +176,8 @@ def feedback(g, b, out):  # type: ignore[no-untyped-def]
         g.place_pitch * b.pitch
         + g.place_speed * b.speed_error
         + g.place_mean_speed * b.mean_speed_error
-        + g.place_offset
+        + g.place_offset * going
+        + _BRAKE * slow * clip(b.speed_error, -0.2, 0.9)
     )
     out[_SWING_SIDE] = swing * (
         g.width_roll * b.roll
@@ -233,10 +240,8 @@ def standing_offset(s, stand, j):  # type: ignore[no-untyped-def]
 @register_jitable
 def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
     """Stop or go; who stops keeps its feet where they are."""
-    off_balance = (
-        (np.abs(stand.capture_forward) > _LEAVES_FORWARD)
-        | (np.abs(stand.capture_left) > stand.width / 2 + _LEAVES_SIDE)
-        | (np.abs(s.roll) > _TIPS)
+    off_balance = (np.abs(stand.capture_forward - 0.005) > 0.115 + 0.3 * stand.stagger) | (
+        np.abs(stand.capture_left) > stand.width / 2 + 0.035
     )
     go = (s.speed_goal > GO_SPEED) | (s.closing & (s.gate < 0.3) & off_balance)
     capturable = (
@@ -264,16 +269,12 @@ def open_gate(s):  # type: ignore[no-untyped-def]
 
 
 @register_jitable
-def act(s, walking_gains, slow_gains, action):  # type: ignore[no-untyped-def]
+def act(s, g, action):  # type: ignore[no-untyped-def]
     """Decide, and correct the gait by feedback and `action` (17,), mirrored as the observation was."""
     balance, stand = balance_of(s), stand_of(s)
     decide(s, stand, balance.step_phase)
     open_gate(s)
-    feedback(walking_gains, balance, s.feedback)
-    feedback(slow_gains, balance, s.slow_feedback)
-    slow = clip(1 - s.speed / _SLOW, 0.0, 1.0)
-    for j in range(N_SERVOS):
-        s.feedback[j] += slow * (s.slow_feedback[j] - s.feedback[j])
+    feedback(g, balance, s.feedback)
     # A quiet stand is left to the standing controller, which keeps it motionless.
     off = np.sqrt(stand.capture_forward**2 + stand.capture_left**2)
     policy = s.gate_before + (1 - s.gate_before) * _HELP * clip(off / _UNREST - 1, 0.0, 1.0)
@@ -288,6 +289,6 @@ def act(s, walking_gains, slow_gains, action):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def act_all(state, gains, action):  # type: ignore[no-untyped-def]
-    """`act` of every walker with its gains (n, 2), for walking and for slow walking; one row serves all."""
+    """`act` of every walker; one row of gains serves all."""
     for i in range(len(state)):
-        act(state[i], gains[i % len(gains), 0], gains[i % len(gains), 1], action[i])
+        act(state[i], gains[i % len(gains)], action[i])

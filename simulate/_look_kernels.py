@@ -18,6 +18,7 @@ TURN_SLEW = 2.0  # rad/s2
 LIMIT = 6.0  # of an observation
 _DOWN, _TOPPLED, _LOST_HEADING = 0.75, 0.75, 1.1  # m, cosine, rad: a body beyond these has fallen
 _MEAN_VELOCITY_S = 0.5
+_AGAINST_DRIFT = 2.0
 _TOUCH_SCALE = 400.0  # N
 _N_JOINTS, _N_SERVOS = body.N_JOINTS, body.N_SERVOS
 _N_QPOS, _N_QVEL = 7 + _N_JOINTS, 6 + _N_JOINTS
@@ -63,8 +64,9 @@ def along_heading(s):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def wanted(s):  # type: ignore[no-untyped-def]
-    """Speed to go to (m/s): as commanded, and a creep until the walker has decided to stand."""
-    return choose(s.closing, s.speed_goal, np.maximum(s.speed_goal, CREEP))
+    """Speed to go to (m/s): as commanded, but who wishes to stand and drifts backwards creeps on instead."""
+    creep = clip(-_AGAINST_DRIFT * s.mean_velocity[0], 0.0, CREEP)
+    return choose(s.closing, s.speed_goal, np.maximum(s.speed_goal, creep))
 
 
 @register_jitable

@@ -33,7 +33,7 @@ class Difficulty:
 
     Attributes
     ----------
-    easy, speed : (low, high) m/s, at level 0 and 1; slow : share of commands from 0.25 m/s up to the low one
+    speed : (low, high) m/s; slow : share of commands from 0.25 m/s up to the low one
     turn : rad/s; grade : rise over run
     stop : share of commands that ask to stand
     stand, halt : shares of episodes that begin standing, and walking with the wish to stand
@@ -42,14 +42,13 @@ class Difficulty:
     """
 
     level: float = 1.0
-    easy: tuple[float, float] = (1.1, 1.3)
     speed: tuple[float, float] = (0.65, 1.95)
     slow: float = 0.12
     turn: float = 1.1
     grade: float = 0.09
     stop: float = 0.3
     stand: float = 0.2
-    halt: float = 0.2
+    halt: float = 0.25
     kick: float = 0.08
     variability: float = 1.2
 
@@ -121,8 +120,8 @@ class Task:
     def draw_commands(self, n: int, *, may_stop: bool = True) -> tuple[np.ndarray, np.ndarray]:
         """Speeds and turn rates: stops, straights, gentle bends and, slower, sharp turns."""
         d, rng = self.difficulty, self.rng
-        low, high = (easy + d.level * (hard - easy) for easy, hard in zip(d.easy, d.speed, strict=True))
-        speed, kind = rng.uniform(low, high, n), rng.random(n)
+        low, high = 1.2 + d.level * (d.speed[0] - 1.2), 1.2 + d.level * (d.speed[1] - 1.2)
+        speed, kind = rng.uniform(min(low, 1.1), max(high, 1.3), n), rng.random(n)
         speed = np.where(rng.random(n) < d.slow * d.level, rng.uniform(0.25, d.speed[0], n), speed)
         gentle, sharp = rng.uniform(-0.2, 0.2, n), rng.uniform(-d.turn, d.turn, n)
         turn = np.where(kind < 0.35, 0.0, np.where(kind < 0.6, gentle, sharp)) * d.level
@@ -168,7 +167,7 @@ class Task:
     def _tilt_gravity(self, mask: np.ndarray) -> None:
         """Sloping ground is level ground under tilted gravity."""
         d, rng, walkers, n = self.difficulty, self.rng, self.walkers, int(mask.sum())
-        tangent = rng.uniform(0, d.grade * d.level, n) * (rng.random(n) < 0.6)
+        tangent = rng.uniform(0, d.grade * d.level, n) * (rng.random(n) < 0.7)
         azimuth = rng.uniform(-np.pi, np.pi, n)
         up = np.stack([tangent * np.cos(azimuth), tangent * np.sin(azimuth), np.ones(n)], 1)
         up /= np.linalg.norm(up, axis=1)[:, None]
@@ -201,7 +200,7 @@ class Task:
 
 
 def balance_gains(asked: np.ndarray | None) -> np.ndarray:
-    """(2, 32) gains of the balance feedback under the action: as asked, or the shipped policy's.
+    """(32,) gains of the balance feedback under the action: as asked, or the shipped policy's.
 
     Raises
     ------

@@ -143,7 +143,7 @@ class Outing:
 
     Parameters
     ----------
-    gains : (2, 32) of the balance feedback
+    gains : (32,) of the balance feedback
     stand : s before the first step
 
     Attributes

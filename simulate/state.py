@@ -18,7 +18,7 @@ N_SENSOR = body.SENSOR_TOUCH.stop  # what control reads; sensors of the IMU come
 # Residual (rad) for an action of 1.
 ACTION_SCALE = 3.3 * np.array([0.2, 0.2, 0.2] + [0.35, 0.25, 0.25, 0.35, 0.25, 0.15] * 2 + [0.2, 0.2])
 
-CREEP = 0.10  # m/s, of a walker that wishes to stand and does not stand yet
+CREEP = 0.30  # m/s at most, of a walker that wishes to stand and drifts backwards
 
 # Places in `varied`: cadence, hip excursion (both relative), step width (m), toe-out of each foot (rad).
 CADENCE, AMPLITUDE, WIDTH, TOE_OUT_RIGHT, TOE_OUT_LEFT = range(5)
@@ -48,7 +48,6 @@ WALKER = np.dtype(
         ("residual", float, body.N_SERVOS),  # feedback and policy as applied, in units of ACTION_SCALE
         ("next_residual", float, body.N_SERVOS),
         ("feedback", float, body.N_SERVOS),  # rad, for right stance
-        ("slow_feedback", float, body.N_SERVOS),  # the part of it that slow walking has
         ("level", float),  # of variability
         ("slow", float),  # part of the cadence
         ("asymmetry", float),

@@ -50,7 +50,7 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
     subject : who walks when `reset` is not told: a stock name, "drawn" (somebody else in each episode), a
         `Subject`; None is the scenario's own or, with random commands, the reference body with habits drawn
     difficulty : of the random commands
-    feedback_gains : (2, 32) balance feedback under the action; those of the shipped policy when None
+    feedback_gains : (32,) balance feedback under the action; those of the shipped policy when None
     width, height : of pictures, pixels
     plan_of : makes a plan of a scenario's name or file
 

@@ -65,7 +65,7 @@ class Walkers:
     Parameters
     ----------
     models : one per walker; they may differ in build, gravity and timestep, not in layout
-    gains : (n, 2, 32) or (2, 32) feedback gains, of walking and of slow walking
+    gains : (n, 32) or (32,) feedback gains
     rng : of the gait's variability
     ground : (x, y) -> height (n,) and gradient (n, 2); level when None
     threads : for the physics; 0 = the calling thread
@@ -198,7 +198,7 @@ class Walkers:
 
     @property
     def gains(self) -> np.ndarray:
-        """(n, 2, 32) or (2, 32) feedback gains, of walking and of slow walking."""
+        """(n, 32) or (32,) feedback gains."""
         return self._gains
 
     @gains.setter

@@ -31,7 +31,7 @@ SEEDS = st.integers(0, 2**32 - 1)
 
 
 def plain_act(state: np.ndarray, gains: np.ndarray, action: np.ndarray) -> None:
-    _balance_kernels.act(Columns(state), Columns(gains[:, 0]), Columns(gains[:, 1]), action.T)
+    _balance_kernels.act(Columns(state), Columns(gains), action.T)
 
 
 def plain_stride(state: np.ndarray, rows: np.ndarray) -> int:
@@ -110,7 +110,7 @@ def test_a_control_step_is_its_twin(seed: int) -> None:
     rng, n = np.random.default_rng(seed), 6
     compiled = random_state(rng, n)
     plain = compiled.copy()
-    gains = gain_records(np.array(GAIN_START) + np.array(GAIN_SCALE) * rng.normal(size=(n, 2, 32)))
+    gains = gain_records(np.array(GAIN_START) + np.array(GAIN_SCALE) * rng.normal(size=(n, 32)))
     action = rng.normal(0, 0.7, (n, N_ACTION))
     np.testing.assert_allclose(observe(compiled), plain_observe(plain), rtol=0, atol=1e-6)
     _balance_kernels.act_all(compiled, gains, action)
