@@ -117,8 +117,8 @@ def test_a_plan_holds_what_the_file_says():
 
 def test_a_plan_holds_pauses_and_changes_of_pace():
     plan = load_scenario("errands").plan(0)
-    assert [stop.distance for stop in plan.stops] == [60.0, 210.0, 330.0, 560.0]
-    assert [(pace.distance, pace.speed) for pace in plan.paces] == [(215.0, 1.5), (330.0, 1.1), (440.0, 1.3)]
+    assert [stop.distance for stop in plan.stops] == [60.0, 210.0, 375.0, 560.0]
+    assert [(pace.distance, pace.speed) for pace in plan.paces] == [(215.0, 1.5), (265.0, 1.1), (440.0, 1.3)]
 
 
 def test_level_scenarios_have_no_terrain():
