@@ -53,7 +53,8 @@ def draw(log: dict[str, np.ndarray], choice: dict, figure: Path) -> None:
     names = sorted(choice["choice"])
     falls = [choice["choice"][name]["falls_per_hour"] for name in names]
     colours = ["C2" if name == choice["chosen"] else "0.7" for name in names]
-    right.bar([name[7:10].lstrip("0") for name in names], falls, color=colours)
+    bars = right.bar([name[7:10].lstrip("0") for name in names], falls, color=colours)
+    right.bar_label(bars, fmt="%.0f", fontsize=8)
     right.axhline(choice["judgement"]["falls_per_hour"], color="C2", ls="--", lw=1)
     right.set(xlabel="checkpoint (% of the training)", ylabel="falls an hour, courses of choice")
     right.set_title("green: chosen; dashed: it, on other courses", fontsize=9)
