@@ -195,7 +195,7 @@ def test_a_fall_is_reported_and_not_averaged(
     assert "1 of 2" in printed
     assert "seed 2: short: the walker fell at 17 m" in printed
     good, bad = json.loads(out.read_text())["walks"]
-    assert 1.0 < good["speed_m_s"] < 1.5
+    assert 0.9 < good["speed_m_s"] < 1.5
     assert bad["stumble"]
     assert "speed_m_s" not in bad
 

@@ -36,7 +36,7 @@ def test_headings_about_north_are_not_averaged_to_south():
     assert circular_std([359 * DEG, 1 * DEG]) == pytest.approx(math.sqrt(2) * DEG)
 
 
-@given(st.lists(st.floats(-0.05, 0.05), min_size=2, max_size=8))
+@given(st.lists(st.floats(-0.03, 0.03), min_size=2, max_size=8))
 def test_close_to_each_other_they_are_the_ordinary_statistics(angles):
     assert circular_mean(angles) == pytest.approx(np.mean(angles), abs=1e-5)
     assert circular_std(angles) == pytest.approx(np.std(angles, ddof=1), abs=1e-5)
