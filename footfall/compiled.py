@@ -1,4 +1,4 @@
-"""Compiled kernels that are as old as what they were compiled from."""
+"""Compiled kernels are never older than what they were compiled from."""
 
 from __future__ import annotations
 

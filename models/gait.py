@@ -84,7 +84,7 @@ def _table() -> np.ndarray:
     return table
 
 
-TABLE = _table()  # (N_PHASE, N_SERVOS) rad, at 1.25 m/s
+TABLE = _table()  # (N_PHASE, N_SERVOS) rad, at 1.2 m/s
 SWINGS = mask("hip_flexion", "shoulder", "lumbar_yaw")  # swing with the stride's length
 BENDS = mask("knee", "ankle")
 
@@ -111,7 +111,7 @@ def stride_frequency(speed: np.ndarray) -> np.ndarray:
 
 @register_jitable
 def hip_amplitude(speed: np.ndarray) -> np.ndarray:
-    """Hip excursion relative to that of the table, which is that at 1.2 m/s."""
+    """Hip excursion relative to that at 1.2 m/s."""
     return (np.maximum(speed, 0.03) / 1.2) ** 0.55
 
 

@@ -62,7 +62,7 @@ def slew(s):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def amplitudes(s):  # type: ignore[no-untyped-def]
-    """Excursions of the hips and of the knees, relative to those at 1.25 m/s."""
+    """Excursions of the hips and of the knees, relative to those of the table."""
     return gait.hip_amplitude(s.speed) * (1 + s.varied[AMPLITUDE]), gait.knee_amplitude(s.speed)
 
 
