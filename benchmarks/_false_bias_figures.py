@@ -77,7 +77,7 @@ def cure(path: Path, simulated: Feet, pairs: Mapping[str, tuple[float, float]]) 
     ----------
     pairs : recording -> false bias of the paper's filter and of the default (deg/s)
     """
-    figure, axes = new_figure(1, 2, 11.5, 3.9)
+    figure, axes = new_figure(1, 2, 11.5, 4.7)
     axis = axes[0, 0]
     r = simulated.reckoning
     stance = replace(PAPER, update="stance")
@@ -96,7 +96,8 @@ def cure(path: Path, simulated: Feet, pairs: Mapping[str, tuple[float, float]]) 
     axis.set_xlabel("time (min)")
     axis.set_ylabel("heading error (deg)")
     axis.set_title("a  A perfect IMU on a simulated foot", loc="left", fontsize=10)
-    axis.legend(frameon=False, fontsize=7.5, loc="lower right")
+    # Below the axes: wherever the lines run, they leave no room within.
+    axis.legend(frameon=False, fontsize=8, loc="upper left", bbox_to_anchor=(-0.02, -0.13))
 
     axis = axes[0, 1]
     names = list(pairs)

@@ -10,7 +10,7 @@ import numpy as np
 from footfall.scenarios.figures import new_figure, save
 
 _LABELS = ("tuning units", "judged units (hindsight)")
-_COLOURS = {"HDR, tuned": "#1f6fb4", "HDR, default": "#c98a00"}
+_COLOURS = ("#1f6fb4", "#c98a00")
 
 
 def draw(
@@ -50,7 +50,8 @@ def draw(
         axis.set_title(f"Average heading error (deg), {label}", loc="left", fontsize=9)
     axis = axes.flat[2]
     before = methods["uncorrected"][:, 1]
-    for name, colour in _COLOURS.items():
+    corrected = [name for name in methods if name != "uncorrected"]
+    for name, colour in zip(corrected, _COLOURS, strict=False):
         after = methods[name][:, 1]
         axis.plot(
             before[in_range], after[in_range], "o", color=colour, ms=4, label=f"{name}, in Table 2's range"

@@ -174,11 +174,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     }
     for scenario, (_, judged) in zip(scenarios, todo, strict=True):
         found = study(judged, [*grid, best, HdrParams()], chosen.processes, f"judging on {scenario.name}")
-        methods = {
-            "uncorrected": found.uncorrected,
-            "HDR, tuned": found.corrected[-2],
-            "HDR, default": found.corrected[-1],
-        }
+        methods = {"uncorrected": found.uncorrected, "HDR, tuned": found.corrected[-2]}
+        if best == HdrParams():
+            methods["HDR, tuned = default"] = methods.pop("HDR, tuned")
+        else:
+            methods["HDR, default"] = found.corrected[-1]
         own = np.isin([case.unit for case in found.cases], scenario.units or ())
         title = (
             f"Heading error (deg), {scenario.name}; tuned: {name_of(best)}; default: {name_of(HdrParams())}"
