@@ -33,7 +33,7 @@ _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
 _STANDING_POINT = -0.004  # m, centre of mass before the middle of the ankles
 _FORWARD_LOW, _FORWARD_HIGH = -0.07, 0.06  # m about the standing point: where the capture point may lie
 _SIDE_SHARE, _NARROWEST = 0.4, 0.13  # of the feet's distance across, which is at least so wide (m)
-_LARGEST_STAGGER = 0.14  # m; a longer stand tips slowly over its rear foot
+_LARGEST_STAGGER = 0.14  # m; a longer stand tips slowly
 _FASTEST = 0.25  # m/s; of the closings of a half-trained walker within all these bounds 86 % held, else 46 %
 _LOADED = 100.0  # N
 _ANKLE_X, _ANKLE_Y = -0.04, 0.09  # m from the pelvis in standing, while there are no sensors
@@ -43,9 +43,7 @@ _ANKLE = 3.8
 _HIP, _HIP_RATE = 2.0, 0.09
 _SIDE, _SIDE_RATE = 3.3, 1.5
 _TRUNK_ROLL = 0.35
-_UPHILL_KNEE, _HIGH_KNEE = 2.5, 4.0  # before and after the pelvis has rolled
-# The policy helps a stand that is not yet quiet: from this capture point on (m) up to a share of its actions.
-_UNREST, _HELP = 0.015, 0.35
+_UPHILL_KNEE, _HIGH_KNEE = 2.5, 2.0  # before and after the pelvis has rolled
 
 # Servos: the right leg stands.
 _LUMBAR_ROLL, _LUMBAR_PITCH = INDEX["lumbar_roll"], INDEX["lumbar_pitch"]
@@ -278,14 +276,11 @@ def act(s, g, action):  # type: ignore[no-untyped-def]
     decide(s, stand, balance.step_phase)
     open_gate(s)
     feedback(g, balance, s.feedback)
-    # A quiet stand is left to the standing controller, which keeps it motionless.
-    off = np.sqrt(stand.capture_forward**2 + stand.capture_left**2)
-    policy = s.gate_before + (1 - s.gate_before) * _HELP * clip(off / _UNREST - 1, 0.0, 1.0)
     for j in range(N_SERVOS):
         m = SERVO_MIRROR[j]
-        here = policy * clip(action[j], -1.0, 1.0) + s.gate_before * s.feedback[j] / ACTION_SCALE[j]
-        there = policy * clip(action[m], -1.0, 1.0) + s.gate_before * s.feedback[m] / ACTION_SCALE[m]
-        walking = choose(s.left_stance, SERVO_SIGN[j] * there, here)
+        here = clip(action[j], -1.0, 1.0) + s.feedback[j] / ACTION_SCALE[j]
+        there = clip(action[m], -1.0, 1.0) + s.feedback[m] / ACTION_SCALE[m]
+        walking = s.gate_before * choose(s.left_stance, SERVO_SIGN[j] * there, here)
         standing = (1 - s.gate_before) * standing_offset(s, stand, j) / ACTION_SCALE[j]
         s.next_residual[j] = clip(walking + standing, -_RESIDUAL_LIMIT, _RESIDUAL_LIMIT)
 
