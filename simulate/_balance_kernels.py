@@ -31,21 +31,19 @@ _GATE_DOWN_S, _GATE_UP_S = 0.23, 0.35
 _PENDULUM_S = 0.31  # sqrt(height of the centre of mass / g)
 _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
 _STANDING_POINT = -0.004  # m, centre of mass before the middle of the ankles
-_FORWARD_LOW, _FORWARD_HIGH = -0.05, 0.04  # m about the standing point: where the capture point may lie
-_SIDE_SHARE, _NARROWEST = 0.4, 0.15  # of the feet's distance across, which is at least so wide (m)
-_LARGEST_STAGGER = 0.17  # m; a longer stand tips slowly over its rear foot
+_FORWARD_LOW, _FORWARD_HIGH = -0.07, 0.06  # m about the standing point: where the capture point may lie
+_SIDE_SHARE, _NARROWEST = 0.4, 0.13  # of the feet's distance across, which is at least so wide (m)
+_LARGEST_STAGGER = 0.14  # m; a longer stand tips slowly
 _FASTEST = 0.25  # m/s; of the closings of a half-trained walker within all these bounds 86 % held, else 46 %
 _LOADED = 100.0  # N
 _ANKLE_X, _ANKLE_Y = -0.04, 0.09  # m from the pelvis in standing, while there are no sensors
 
 # Gains of the standing controller, rad per m, per m/s, per rad.
-_ANKLE, _ANKLE_RATE = 3.8, 0.75
+_ANKLE = 3.8
 _HIP, _HIP_RATE = 2.0, 0.09
 _SIDE, _SIDE_RATE = 3.3, 1.5
 _TRUNK_ROLL = 0.35
-_UPHILL_KNEE = 2.5
-# The policy helps a stand that is not yet quiet: from this capture point on (m) up to a share of its actions.
-_UNREST, _HELP = 0.015, 0.35
+_UPHILL_KNEE, _HIGH_KNEE = 2.5, 2.0  # before and after the pelvis has rolled
 
 # Servos: the right leg stands.
 _LUMBAR_ROLL, _LUMBAR_PITCH = INDEX["lumbar_roll"], INDEX["lumbar_pitch"]
@@ -56,7 +54,8 @@ _STANCE_KNEE, _SWING_KNEE = INDEX["knee_r"], INDEX["knee_l"]
 _STANCE_ANKLE, _SWING_ANKLE = INDEX["ankle_r"], INDEX["ankle_l"]
 _STANCE_SUBTALAR = INDEX["subtalar_r"]
 
-_ANKLES, _HIPS, _TRUNK = mask("ankle"), mask("hip_flexion"), mask("lumbar_roll")
+_ANKLE_R, _ANKLE_L = mask("ankle_r"), mask("ankle_l")
+_HIPS, _TRUNK = mask("hip_flexion"), mask("lumbar_roll")
 _SIDEWAYS = mask("hip_adduction_r") - mask("hip_adduction_l")
 _BEND_R = mask("knee_r") + 0.5 * mask("hip_flexion_r") + 0.5 * mask("ankle_r")
 _BEND_L = mask("knee_l") + 0.5 * mask("hip_flexion_l") + 0.5 * mask("ankle_l")
@@ -225,15 +224,17 @@ def stand_of(s):  # type: ignore[no-untyped-def]
 @register_jitable
 def standing_offset(s, stand, j):  # type: ignore[no-untyped-def]
     """Offset (rad) of servo j's target that holds a stand."""
-    ankle = -_ANKLE * stand.forward - _ANKLE_RATE * stand.forward_velocity
+    # The ankles act on the capture point: from the place alone they would push on a body on its way to rest.
+    # Each as far as its foot is loaded: an unloaded one that pushed would lift its heel and tip the pelvis.
+    ankle = -_ANKLE * stand.capture_forward
+    load_r = 2 * clip(0.5 - stand.left / np.maximum(stand.width, 0.1), 0.0, 1.0)
     hip = -_HIP * s.pitch - _HIP_RATE * s.qvel[4]
     side = _SIDE * stand.left + _SIDE_RATE * stand.left_velocity
-    out = (
-        ankle * _ANKLES[j] + hip * _HIPS[j] + side * _SIDEWAYS[j] - _TRUNK_ROLL * stand.trunk_roll * _TRUNK[j]
-    )
-    # Across a slope the uphill knee bends.
-    right = np.maximum(-_UPHILL_KNEE * s.grade_left, 0.0)
-    left = np.maximum(_UPHILL_KNEE * s.grade_left, 0.0)
+    out = ankle * (load_r * _ANKLE_R[j] + (2 - load_r) * _ANKLE_L[j]) + hip * _HIPS[j]
+    out = out + side * _SIDEWAYS[j] - _TRUNK_ROLL * stand.trunk_roll * _TRUNK[j]
+    # Across a slope the uphill knee bends, and wherever the pelvis has rolled the knee of its high side.
+    right = np.maximum(-_UPHILL_KNEE * s.grade_left, 0.0) + np.maximum(-_HIGH_KNEE * s.roll, 0.0)
+    left = np.maximum(_UPHILL_KNEE * s.grade_left, 0.0) + np.maximum(_HIGH_KNEE * s.roll, 0.0)
     return out + right * _BEND_R[j] + left * _BEND_L[j]
 
 
@@ -275,14 +276,11 @@ def act(s, g, action):  # type: ignore[no-untyped-def]
     decide(s, stand, balance.step_phase)
     open_gate(s)
     feedback(g, balance, s.feedback)
-    # A quiet stand is left to the standing controller, which keeps it motionless.
-    off = np.sqrt(stand.capture_forward**2 + stand.capture_left**2)
-    policy = s.gate_before + (1 - s.gate_before) * _HELP * clip(off / _UNREST - 1, 0.0, 1.0)
     for j in range(N_SERVOS):
         m = SERVO_MIRROR[j]
-        here = policy * clip(action[j], -1.0, 1.0) + s.gate_before * s.feedback[j] / ACTION_SCALE[j]
-        there = policy * clip(action[m], -1.0, 1.0) + s.gate_before * s.feedback[m] / ACTION_SCALE[m]
-        walking = choose(s.left_stance, SERVO_SIGN[j] * there, here)
+        here = clip(action[j], -1.0, 1.0) + s.feedback[j] / ACTION_SCALE[j]
+        there = clip(action[m], -1.0, 1.0) + s.feedback[m] / ACTION_SCALE[m]
+        walking = s.gate_before * choose(s.left_stance, SERVO_SIGN[j] * there, here)
         standing = (1 - s.gate_before) * standing_offset(s, stand, j) / ACTION_SCALE[j]
         s.next_residual[j] = clip(walking + standing, -_RESIDUAL_LIMIT, _RESIDUAL_LIMIT)
 

@@ -78,11 +78,14 @@ def settle(s):  # type: ignore[no-untyped-def]
     s.fresh = False
     s.heading += s.turn * s.dt
     slew = SPEED_SLEW * s.dt
-    s.speed += clip(wanted(s) - s.speed, -SLOWING_SHARE * slew, choose(s.gate > 0.3, slew, 0.0))
+    change = clip(wanted(s) - s.speed, -SLOWING_SHARE * slew, choose(s.gate > 0.3, slew, 0.0))
+    s.speed += change
     turn = s.turn + clip(s.turn_goal - s.turn, -TURN_SLEW * s.dt, TURN_SLEW * s.dt)
     s.turn = choose(s.gate < 0.5, 0.0, turn)
     along, across = along_heading(s)
-    s.mean_velocity[0] += (along - s.mean_velocity[0]) * (s.dt / _MEAN_VELOCITY_S)
+    # The mean moves with the command, or whoever follows a falling one would seem too fast, and be braked
+    # until it walks backwards.
+    s.mean_velocity[0] += change + (along - s.mean_velocity[0]) * (s.dt / _MEAN_VELOCITY_S)
     s.mean_velocity[1] += (across - s.mean_velocity[1]) * (s.dt / _MEAN_VELOCITY_S)
 
 

@@ -40,7 +40,7 @@ WALKER = np.dtype(
         ("speed_goal", float),
         ("turn", float),
         ("turn_goal", float),
-        ("mean_velocity", float, 2),  # along and across the commanded heading
+        ("mean_velocity", float, 2),  # along and across the commanded heading: command and mean error
         # the gait
         ("phase", float),  # of the stride, 0 at the right heel strike
         ("advance", float),  # of the phase in this control step

@@ -20,6 +20,7 @@ from footfall.models.body import (
 from footfall.models.policy import load_policy, stock_policy
 from footfall.models.subject import Build, Habits
 from footfall.simulate._balance_kernels import Balance, feedback
+from footfall.simulate._look_kernels import land_all
 from footfall.simulate._variability_kernels import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD
 from footfall.simulate.env import balance_gains
 from footfall.simulate.feedback import GAIN_SHAPE, GAIN_START, SERVO_MIRROR, SERVO_SIGN, Gains, gain_records
@@ -217,6 +218,24 @@ def test_it_starts_from_standing() -> None:
         group.step(policy(group.observe()))
         assert not group.fallen().any()
     assert (group.mean_velocity[:, 0] > 0.9).all()
+
+
+@pytest.mark.parametrize(("speed", "goal"), [(1.5, 0.0), (0.5, 1.6)])
+def test_whoever_follows_a_changing_command_is_on_average_neither_late_nor_early(
+    speed: float, goal: float
+) -> None:
+    """A plain mean of the velocity lags: a walker in braking then seems too fast, and brakes too much."""
+    state = np.zeros(1, WALKER)
+    state["dt"], state["gate"], state["speed"], state["speed_goal"] = 0.03, 1.0, speed, goal
+    state["qpos"][:, 3], state["up"], state["mean_velocity"][:, 0] = 1.0, [0, 0, 1], speed
+    after = np.zeros((1, 1, 1 + state["qpos"].shape[1] + state["qvel"].shape[1]))
+    after[..., 4] = 1.0
+    sensor = np.zeros((1, 1, state["sensor"].shape[1]))
+    for _ in range(60):
+        after[..., 1 + state["qpos"].shape[1]] = state["speed"]
+        land_all(state, after, sensor)
+        assert state["mean_velocity"][0, 0] == pytest.approx(state["speed"][0], abs=0.02)
+    assert state["speed"][0] != speed
 
 
 def test_touch_sensors_carry_the_body() -> None:
