@@ -189,9 +189,8 @@ def test_it_climbs_what_the_ground_climbs(short_plan: Plan) -> None:
     ground = Ground(-12.0, -12.0, 0.5, np.tile(grade * x, (90, 1)).astype(np.float32))
     climbing = walk(replace(short_plan, ground=ground))
     falls = climbing.footfalls.position
-    np.testing.assert_allclose(
-        falls[:, 2] - grade * falls[:, 0], falls[0, 2] - grade * falls[0, 0], atol=0.012
-    )
+    above = falls[:, 2] - grade * falls[:, 0]
+    np.testing.assert_allclose(above, np.median(above), atol=0.012)
     assert falls[-1, 2] - falls[0, 2] > 0.6
 
 
