@@ -56,7 +56,7 @@ def scripts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> SimpleNamespace:
     """The benchmarks as modules, by name; walks are cached in a folder of their own."""
     monkeypatch.syspath_prepend(str(FOLDER))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    names = ("_common", "hdr_table2", "imu_truth", "robustness", "stock_units", "walker_speed")
+    names = ("_common", "hdr_table2", "imu_truth", "robustness", "stock_units", "stops", "walker_speed")
     return SimpleNamespace(**{name: importlib.import_module(name) for name in names})
 
 
@@ -176,6 +176,27 @@ def test_robustness_reads_a_known_gait(scripts, short: str) -> None:
     assert found.stride_sd_ms == pytest.approx(0, abs=1e-9)
     assert found.stance_yaw_sd_deg == pytest.approx(2, rel=0.05)
     assert found.lateral_rms_m == pytest.approx(0.05, rel=0.05)
+
+
+def test_stops_read_a_foot_that_comes_to_rest(scripts) -> None:
+    """Stands but the first, each from the moment the foot is down; shorter stances are steps."""
+    t = np.arange(0, 20, 0.005)
+    stance = (t < 2) | ((t > 3) & (t < 3.6)) | ((t > 5) & (t < 10)) | (t > 12)
+    rate = np.where(t < 12, 8 * np.exp(-np.maximum(t - 5, 0)), 0.3)
+    truth = SimpleNamespace(t=t, stance=stance, gyro=np.radians(rate)[:, None] * [0.6, 0.0, -0.8])
+    found = scripts.stops.rates_in_stands(truth)
+    fading = 8 * np.exp(-np.array(scripts.stops.AFTER_S))
+    np.testing.assert_allclose(found, [fading, [0.3] * 3], rtol=0.02)
+
+
+def test_a_stop_on_a_slope_is_one(scripts) -> None:
+    """The ground rises as the place says, and who walks there stands twice or has fallen."""
+    place = scripts.stops.Place(5.0, "across")
+    ground = place.ground()
+    assert np.gradient(ground.heights, axis=0) == pytest.approx(0.05, abs=1e-6)
+    assert np.gradient(ground.heights, axis=1) == pytest.approx(0.0, abs=1e-6)
+    found = scripts.stops.stop((place, 1))
+    assert len(found.rates) >= 2 or found.fell
 
 
 def test_a_fall_is_reported_and_not_averaged(
