@@ -19,6 +19,7 @@ from numba.extending import register_jitable
 from footfall.models.body import HIP_HEIGHT, JOINTS, N_SERVOS, SENSOR_FOOT_POSITION, SENSOR_TOUCH
 from footfall.models.gait import INDEX, mask
 from footfall.simulate._elementwise import choose, clip, turned
+from footfall.simulate._look_kernels import over_ground
 from footfall.simulate.feedback import SERVO_MIRROR, SERVO_SIGN
 from footfall.simulate.state import ACTION_SCALE, CREEP
 
@@ -74,8 +75,8 @@ class Balance(NamedTuple):
     """What the feedback looks at, in the heading frame and mirrored to right stance.
 
     pitch (nose down positive) and roll are relative to gravity, yaw_error to the commanded heading;
-    `foot_y` is the pelvis relative to the stance foot (m); `step_phase` runs 0..1 over a step; `speed` is the
-    commanded one.
+    `foot_y` is the pelvis relative to the stance foot (m); places and velocities are along the ground.
+    `step_phase` runs 0..1 over a step; `speed` is the commanded one.
     """
 
     pitch: Any
@@ -120,8 +121,10 @@ def balance_of(s):  # type: ignore[no-untyped-def]
     side = choose(s.left_stance, -1.0, 1.0)
     foot_x = choose(s.left_stance, s.sensor[_FOOT_L], s.sensor[_FOOT_R])
     foot_y = choose(s.left_stance, s.sensor[_FOOT_L + 1], s.sensor[_FOOT_R + 1])
+    foot_z = choose(s.left_stance, s.sensor[_FOOT_L + 2], s.sensor[_FOOT_R + 2])
     _, aside = turned(s, s.qpos[0] - foot_x, s.qpos[1] - foot_y)
-    along, across = turned(s, s.qvel[0], s.qvel[1])
+    aside = aside + s.tilt_left * (s.qpos[2] - foot_z)
+    along, across, _ = over_ground(s)
     return Balance(
         pitch=s.pitch,
         roll=s.roll * side,

@@ -44,6 +44,8 @@ def look(s):  # type: ignore[no-untyped-def]
     s.yaw_error = (s.yaw - s.heading + np.pi) % (2 * np.pi) - np.pi
     s.height = s.qpos[2] - s.ground
     s.grade_forward, s.grade_left = turned(s, s.gradient[0], s.gradient[1])
+    # Training tilts gravity over level ground, walks tilt the ground: both must look the same to the laws.
+    s.tilt_forward, s.tilt_left = turned(s, s.gradient[0] - s.up[0], s.gradient[1] - s.up[1])
     s.left_stance = np.floor(s.phase * 2) % 2 == 1
     finite = np.isfinite(s.height)
     for j in range(_N_QPOS):
@@ -53,6 +55,14 @@ def look(s):  # type: ignore[no-untyped-def]
     upright = r[0, 2] * s.up[0] + r[1, 2] * s.up[1] + r[2, 2] * s.up[2]
     astray = np.abs(s.yaw_error) > _LOST_HEADING
     s.fallen = (s.height < _DOWN) | (upright < _TOPPLED) | astray | np.logical_not(finite)
+
+
+@register_jitable
+def over_ground(s):  # type: ignore[no-untyped-def]
+    """Pelvis velocity forward, left and off the ground, along which the first two are (m/s)."""
+    along, aside = turned(s, s.qvel[0], s.qvel[1])
+    upward = s.qvel[2] - s.tilt_forward * along - s.tilt_left * aside
+    return along + s.tilt_forward * s.qvel[2], aside + s.tilt_left * s.qvel[2], upward
 
 
 @register_jitable
@@ -95,13 +105,13 @@ def observe(s, mirror, sign, own, seen):  # type: ignore[no-untyped-def]
 
     The order is that of `observation.LAYOUT`.
     """
-    along, aside = turned(s, s.qvel[0], s.qvel[1])
+    along, aside, upward = over_ground(s)
     step_angle = 2 * np.pi * ((s.phase * 2) % 1)
     own[0] = (s.height - 0.98) * 5
     for i in range(3):
         own[1 + i] = s.up_body[i] * 2
         own[7 + i] = s.qvel[3 + i] * 0.4
-    own[4], own[5], own[6] = (along - s.speed) * 1.5, aside * 1.5, s.qvel[2] * 1.5
+    own[4], own[5], own[6] = (along - s.speed) * 1.5, aside * 1.5, upward * 1.5
     at = 10
     for i in range(_N_JOINTS):
         own[at + i] = s.qpos[7 + i] * 1.5

@@ -72,6 +72,8 @@ WALKER = np.dtype(
         ("height", float),  # m, of the pelvis over the ground
         ("grade_forward", float),
         ("grade_left", float),
+        ("tilt_forward", float),  # of the ground in the frame of qpos, where grade is that against gravity
+        ("tilt_left", float),
         ("left_stance", bool),
         ("fallen", bool),  # down, toppled, turned away from the commanded heading, or not finite
     ],

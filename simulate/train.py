@@ -25,14 +25,13 @@ from footfall.simulate.env import Difficulty, Task, WalkVectorEnv, draw_build
 from footfall.simulate.feedback import GAIN_SCALE, GAIN_START
 from footfall.simulate.observation import N_OBSERVATION
 from footfall.simulate.ppo import HORIZON, Learner, Schedule
-from footfall.simulate.trial import CHOICE, JUDGEMENT, Verdict, attempt
+from footfall.simulate.trial import CHOICE, CHOICE_SEED, JUDGEMENT, JUDGEMENT_SEED, Verdict, attempt
 from footfall.simulate.walkers import CONTROL_INTERVAL, N_ACTION
 from footfall.tables import replacing
 
 ENVS = 64
 _CANDIDATES, _REPEATS, _TRIAL_S = 16, 4, 6.0
 _KEEP_FROM, _KEEP_EVERY = 0.6, 0.05  # of the planned samples: checkpoints among which the best is chosen
-_CHOICE_SEED, _JUDGEMENT_SEED = 11, 12
 
 
 def tune_gains(seed: int, generations: int, threads: int) -> np.ndarray:
@@ -166,11 +165,11 @@ def choose(out: Path, threads: int) -> None:
 
     found: dict[str, Verdict] = {}
     for path in sorted(out.glob("policy_*.npz")):
-        found[path.name] = attempt(load_policy(path), CHOICE, seed=_CHOICE_SEED, threads=threads)
+        found[path.name] = attempt(load_policy(path), CHOICE, seed=CHOICE_SEED, threads=threads)
         print(f"{path.name}: {found[path.name].falls_per_hour:.1f} falls an hour", flush=True)
     # Of equals the one that has learnt longest.
     best = min(reversed(found), key=lambda name: found[name].falls_per_hour)
-    judged = attempt(load_policy(out / best), JUDGEMENT, seed=_JUDGEMENT_SEED, threads=threads)
+    judged = attempt(load_policy(out / best), JUDGEMENT, seed=JUDGEMENT_SEED, threads=threads)
     report = {
         "chosen": best,
         "choice": {name: told(verdict) for name, verdict in found.items()},

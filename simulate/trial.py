@@ -16,6 +16,7 @@ from footfall.simulate.walkers import CONTROL_INTERVAL, Walkers
 
 _SPACING = 0.05  # m, of the routes' samples
 _PHYSICS_STEP = 0.0025  # s
+CHOICE_SEED, JUDGEMENT_SEED = 11, 12  # of the people on the courses
 
 
 @dataclass(frozen=True)

@@ -8,19 +8,21 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
 from footfall.models.body import (
     N_SERVOS,
+    SENSOR_FOOT_POSITION,
     SENSOR_FOOT_RATE,
     SENSOR_TOUCH,
     build_body,
 )
 from footfall.models.policy import load_policy, stock_policy
 from footfall.models.subject import Build, Habits
-from footfall.simulate._balance_kernels import Balance, feedback
-from footfall.simulate._look_kernels import land_all
+from footfall.simulate._balance_kernels import Balance, balance_of, feedback
+from footfall.simulate._look_kernels import land_all, look_all
 from footfall.simulate._variability_kernels import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD
 from footfall.simulate.env import balance_gains
 from footfall.simulate.feedback import GAIN_SHAPE, GAIN_START, SERVO_MIRROR, SERVO_SIGN, Gains, gain_records
@@ -206,6 +208,35 @@ def test_standing_stands(grade: float) -> None:
     assert not group.fallen().any()
     assert (group.gate.value == 0).all()
     assert np.degrees(np.abs(trace.sensor[:, :, SENSOR_FOOT_RATE])).max() < 1.0
+
+
+@pytest.mark.parametrize("grade", [(0.08, 0.0), (0.0, 0.08), (0.05, -0.06)])
+def test_a_slope_looks_the_same_as_level_ground_under_tilted_gravity(grade: tuple[float, float]) -> None:
+    """Training tilts gravity, walks tilt the ground: in either frame a body is one to the laws."""
+    up = np.array([*grade, 1.0]) / np.linalg.norm([*grade, 1.0])
+    tilted, policy = walkers(), stock_policy()
+    tilted.up[:] = up
+    tilted.models[0].opt.gravity[:] = -GRAVITY * up
+    place(tilted)
+    sloping = walkers()
+    sloping.ground = lambda x, y: (grade[0] * x + grade[1] * y, np.tile(grade, (len(x), 1)))
+    turn = Rotation.align_vectors([[0, 0, 1]], [up])[0]
+    for _ in range(40):
+        action = policy(tilted.observe())
+        tilted.step(action)
+        sloping._state[:] = tilted._state
+        sloping.up[:] = [0, 0, 1]
+        for moved in ("qpos", "qvel"):
+            getattr(sloping, moved)[0, :3] = turn.apply(getattr(tilted, moved)[0, :3])
+        attitude = turn * Rotation.from_quat(tilted.qpos[0, 3:7], scalar_first=True)
+        sloping.qpos[0, 3:7] = attitude.as_quat(scalar_first=True)
+        feet = turn.apply(tilted.sensor[0, SENSOR_FOOT_POSITION].reshape(2, 3))
+        sloping.sensor[0, SENSOR_FOOT_POSITION] = feet.ravel()
+        sloping._find_ground(sloping.qpos[:, 0], sloping.qpos[:, 1])
+        look_all(sloping._state)
+        np.testing.assert_allclose(sloping.observe(), tilted.observe(), atol=0.03)
+        one, other = (balance_of(Columns(group._state)) for group in (sloping, tilted))
+        np.testing.assert_allclose(np.stack(one), np.stack(other), atol=0.012)
 
 
 def test_it_starts_from_standing() -> None:
