@@ -37,7 +37,7 @@ class Build:
     trunk_mass: float = 1.0
     leg_mass: float = 1.0
     friction: float = 1.0
-    sole_time: float = 0.020
+    sole_time: float = 0.016
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class Subject:
     toe_out_deg: float = 3.0
     asymmetry: float = 0.0
     friction: float = 1.0
-    sole_time_s: float = 0.020
+    sole_time_s: float = 0.016
 
     def __post_init__(self) -> None:
         for key, (low, high) in _LIMITS.items():
@@ -134,7 +134,7 @@ class Subject:
 
 
 # Soles by their softness: the contact's time constant (s). Lengths of the shoe do not differ.
-SHOES = {"stiff": 0.013, "walking": 0.020, "running": 0.026}
+SHOES = {"stiff": 0.013, "walking": 0.016, "running": 0.026}
 
 # The paper's walks "were performed by two different subjects" (Borenstein et al. 2008, section 5).
 SUBJECTS = {
