@@ -122,8 +122,9 @@ def aligned(signals: Signals) -> Signals:
     """Turn the sensor's axes into the foot's.
 
     Up is the mean specific force at mid-stance, when the sole is flat. The pitch axis is the horizontal
-    direction of the largest rates (first principal component). It points left where push-off, which comes
-    before the swing, is the positive peak. The static bias of the first second is taken off the gyro.
+    direction of the largest rates (first principal component). It points left where it makes the foot turn its
+    toes down, at push-off, further than up before it lands. The static bias of the first second is taken off
+    the gyro.
 
     Raises
     ------
@@ -142,8 +143,8 @@ def aligned(signals: Signals) -> Signals:
     left -= (left @ up) * up
     left /= np.linalg.norm(left)
     pitch = gyro @ left
-    order = [np.argmax(pitch[a:b]) - np.argmin(pitch[a:b]) for a, b in pairwise(rows)]
-    if np.median(order) > 0:
+    turned = [np.cumsum(pitch[a:b]) for a, b in pairwise(rows)]
+    if np.median([angle.max() + angle.min() for angle in turned]) < 0:
         left = -left
     axes = np.array([np.cross(left, up), left, up])
     return Signals(gyro @ axes.T, signals.accel @ axes.T)
