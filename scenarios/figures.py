@@ -136,6 +136,12 @@ def colours_of(methods: Sequence[str]) -> dict[str, str]:
     return found
 
 
+def widths_of(methods: Sequence[str]) -> dict[str, float]:
+    """Line widths: wider what is drawn first, so that it shows on both sides of whatever repeats it."""
+    step = min(0.9, 3 / len(methods))
+    return {method: 1.1 + step * later for later, method in enumerate(reversed(list(methods)))}
+
+
 def label_of(method: str) -> str:
     """A method's name in legends."""
     return _LABELS.get(method, method)
@@ -157,10 +163,10 @@ def maps(results: Sequence[Result], title: str | None = None) -> Figure:
     """Truth and every method's track, one panel a walk (the HDR paper's Figure 8)."""
     figure, axes = new_panels(len(results), 3.7, 3.3)
     for axis, result in zip(axes, results, strict=True):
-        colours = colours_of(list(result.tracks))
+        colours, widths = colours_of(list(result.tracks)), widths_of(list(result.tracks))
         for name, track in result.tracks.items():
             row = compare(track, result.walk)
-            axis.plot(*row.estimate.T, color=colours[name], lw=1.1, label=label_of(name))
+            axis.plot(*row.estimate.T, color=colours[name], lw=widths[name], label=label_of(name))
             axis.plot(*row.estimate[-1], "o", color=colours[name], ms=4)
         truth = result.walk.footfalls.position[:, :2]
         axis.plot(*truth.T, color=_TRUTH, lw=2.2, alpha=0.45, label="truth", zorder=1)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from footfall.scenarios.figures import colours_of, head, label_edges, label_of, new_figure, save
+from footfall.scenarios.figures import colours_of, head, label_edges, label_of, new_figure, save, widths_of
 from footfall.scenarios.run import Result
 from footfall.scenarios.score import compare
 
@@ -31,7 +31,8 @@ def evaluation(result: Result, title: str | None = None) -> Figure:
     """
     method = judging(result)
     assert method is not None
-    track, colours = result.tracks[method], colours_of(list(result.tracks))
+    track, names = result.tracks[method], list(result.tracks)
+    colours, widths = colours_of(names), widths_of(names)
     figure, grid = new_figure(2, 1, 7.2, 4.6, sharex=True, height_ratios=[1.6, 1.0])
     above, below = grid[:, 0]
     began = track.t[0]
@@ -43,7 +44,8 @@ def evaluation(result: Result, title: str | None = None) -> Figure:
     for name, other in result.tracks.items():
         off = compare(other, result.walk).heading_error
         true = np.interp(other.t, row.t, truth)
-        above.plot(other.t - began, true + np.degrees(off), color=colours[name], lw=1.1, label=label_of(name))
+        line = true + np.degrees(off)
+        above.plot(other.t - began, line, color=colours[name], lw=widths[name], label=label_of(name))
     low, high = above.get_ylim()
     for quarter in range(int(np.floor(low / 90)), int(np.ceil(high / 90)) + 1):
         above.axhline(90 * quarter, color="#888888", lw=0.6, ls=":", zorder=0)

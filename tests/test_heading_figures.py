@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from footfall.scenarios.figures import colours_of
+from footfall.scenarios.figures import colours_of, maps
 from footfall.scenarios.heading_figures import evaluation, heading_figures, judging
 from footfall.scenarios.paper import IHDE_TABLE_2, range_text
 from footfall.scenarios.report import run_report
@@ -98,6 +98,15 @@ def test_nothing_hides_another(walked):
         high = min(one.y1, other.y1) - max(one.y0, other.y0)
         assert min(wide, high) < 1
     assert all(box.x0 > -1 and box.x1 < figure.bbox.x1 + 1 for box in boxes)
+
+
+def test_a_track_that_another_repeats_still_shows(walked):
+    for axis in (maps([walked]).axes[0], evaluation(walked).axes[0]):
+        lines = {line.get_label(): line for line in axis.lines}
+        drawn = [lines[label] for label in ("IEZ", "HDE", "IHDE")]
+        assert [axis.lines.index(line) for line in drawn] == sorted(axis.lines.index(line) for line in drawn)
+        widths = [line.get_linewidth() for line in drawn]
+        assert widths == sorted(set(widths), reverse=True)
 
 
 def test_the_figure_is_drawn_where_a_method_evaluates(walked, tmp_path):
