@@ -121,7 +121,7 @@ def test_a_control_step_is_its_twin(seed: int) -> None:
     assert count == plain_stride(plain, other_rows)
     rows = rows[:count]
     np.testing.assert_array_equal(rows, other_rows[:count])
-    normal = rng.standard_normal((count, 6))
+    normal = rng.standard_normal((count, 5))
     _variability_kernels.draw_all(compiled, rows, normal)
     plain_draw(plain, rows, normal)
     assert_same(compiled, plain)
