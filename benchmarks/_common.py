@@ -78,8 +78,12 @@ def shortened(route: Route, metres: float | None) -> Route:
 
 
 def within_paper(errors: np.ndarray) -> np.ndarray:
-    """(...) bool: errors (..., 2), final and average in deg, lie in the range of the paper's Table 2."""
+    """(...) bool: errors (..., 2), final and average in deg, lie in the range of the paper's Table 2.
+
+    Compared in whole degrees, as the paper gives them.
+    """
     low, high = np.transpose([UNCORRECTED_FINAL_RANGE, UNCORRECTED_AVERAGE_RANGE])
+    errors = np.round(errors)
     return ((errors >= low) & (errors <= high)).all(axis=-1)
 
 

@@ -122,9 +122,8 @@ def aligned(signals: Signals) -> Signals:
     """Turn the sensor's axes into the foot's.
 
     Up is the mean specific force at mid-stance, when the sole is flat. The pitch axis is the horizontal
-    direction of the largest rates (first principal component). It points left where it makes the foot turn its
-    toes down, at push-off, further than up before it lands. The static bias of the first second is taken off
-    the gyro.
+    direction of the largest rates (first principal component). It points left where the toes turn down, at
+    push-off, further than up before the landing. The static bias of the first second is taken off the gyro.
 
     Raises
     ------

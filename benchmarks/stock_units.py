@@ -1,9 +1,10 @@
 """Choose the closed loop's five units: drawn from the sheet, kept when they fit the paper's Table 2.
 
 Unit seeds are tried in order from 0, seed k on walk k mod 5 of the scenario. A unit fits when its uncorrected
-final and average heading errors lie in the range of the paper's five walks (102-307 and 34-145 deg). It is
-kept when it fits, its walk has no unit yet, and neither has its fifth of the range of final errors: so the
-five span the range as the paper's do. Nothing but uncorrected errors is looked at: HDR is never run here.
+final and average heading errors lie in the range of the paper's five walks (102-307 and 34-145 deg), in whole
+degrees as the paper gives them. It is kept when it fits, its walk has no unit yet, and neither has its fifth
+of the range of final errors: so the five span the range as the paper's do. Nothing but uncorrected errors is
+looked at: HDR is never run here.
 
 python benchmarks/stock_units.py
 """

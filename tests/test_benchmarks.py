@@ -130,6 +130,11 @@ def test_a_seed_on_both_sides_is_refused(scripts, short: str, clash: list[str]) 
         scripts.hdr_table2.main([short, "--units", "4", *clash])
 
 
+def test_units_fit_to_the_papers_whole_degrees(scripts) -> None:
+    for final, fits in ((101.4, False), (101.6, True), (307.4, True), (307.6, False)):
+        assert scripts.stock_units.judge(0, 0, np.array([final, 80.0]), 5).fits == fits
+
+
 @given(st.data())
 def test_units_are_kept_by_the_stated_rule(data: st.DataObject) -> None:
     sys.path.insert(0, str(FOLDER))
@@ -145,7 +150,8 @@ def test_units_are_kept_by_the_stated_rule(data: st.DataObject) -> None:
     kept = stock_units.keep(drawn)
     assert len({one.walk for one in kept}) == len({one.part for one in kept}) == len(kept)
     for one in drawn:
-        assert one.fits == (102 <= one.final <= 307 and 34 <= one.average <= 145)
+        # In whole degrees, as the paper gives its own.
+        assert one.fits == (102 <= round(one.final) <= 307 and 34 <= round(one.average) <= 145)
         before = [other for other in kept if other.unit < one.unit]
         free = all(other.walk != one.walk and other.part != one.part for other in before)
         assert (one in kept) == (one.fits and free)
