@@ -101,6 +101,23 @@ def track(
     heading: Annotated[
         float, typer.Option(help="Heading at the start, deg, counter-clockwise from x.", callback=finite)
     ] = 0.0,
+    directions: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            help="How many dominant directions there are, evenly spaced, for a method that goes by them: 4 "
+            "if left out, 8 with diagonals.",
+            show_default=False,
+        ),
+    ] = None,
+    reference: Annotated[
+        float | None,
+        typer.Option(
+            help="One of them, deg, counter-clockwise from x; if left out, the heading at the start.",
+            callback=finite,
+            show_default=False,
+        ),
+    ] = None,
     format: FormatOption = "auto",
     unit: UnitOption = None,
     rate: RateOption = None,
@@ -128,6 +145,8 @@ def track(
             detector=detector,
             bias_s=bias_time,
             start=StartPose(heading=math.radians(heading)),
+            directions=directions,
+            reference=None if reference is None else math.radians(reference),
         )
         write_track(result.track, output)
     for sentence in result.findings.sentences():

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Literal
 
 from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams
@@ -28,19 +29,24 @@ class Method:
     name : as in `METHODS`
     description : one line for people
     run : makes the track; takes footfalls or samples from the `Reckoning`, whichever it needs
+    directions : which of its dominant directions can be told: "none" goes by none, "count" learns where they
+        are, "all" takes their number and one of them
     """
 
     name: str
     description: str
     run: Callable[[Reckoning], Track]
+    directions: Literal["none", "count", "all"] = "none"
 
 
 def _counted(reckoning: Reckoning) -> DirectionParams:
-    """Dominant directions counted from the heading at the start, which is 0 deg in the papers.
+    """Dominant directions, counted from the heading at the start unless one of them is known.
 
-    So the foot may point beside the path: at the start it does so as much as later.
+    That heading is 0 deg in the papers. So the foot may point beside the path: at the start it does so as
+    much as later.
     """
-    return DirectionParams(reference=reckoning.start.heading)
+    reference = reckoning.start.heading if reckoning.reference is None else reckoning.reference
+    return DirectionParams(count=reckoning.directions, reference=reference)
 
 
 def _hde(reckoning: Reckoning) -> Hde:
@@ -52,7 +58,9 @@ def _ihde(reckoning: Reckoning) -> Ihde:
 
 
 def _learning(reckoning: Reckoning) -> Ihde:
-    return Ihde(IhdeParams(fallback=False, directions=DirectionParams(reference=None)))
+    return Ihde(
+        IhdeParams(fallback=False, directions=DirectionParams(count=reckoning.directions, reference=None))
+    )
 
 
 def _jimenez(reckoning: Reckoning) -> Jimenez:
@@ -89,36 +97,43 @@ METHODS: Mapping[str, Method] = MappingProxyType(
                 "hde-2010",
                 "Heuristic Drift Elimination (2010) after pdr: stepwise towards dominant directions",
                 lambda r: hde_2010_track(r.footfalls, Hde2010Params(directions=_counted(r))),
+                directions="all",
             ),
             Method(
                 "hde",
                 "iez, and always the nearest of four dominant directions for the heading",
                 lambda r: corrected_track(r, _hde(r), name="hde"),
+                directions="all",
             ),
             Method(
                 "ihde",
                 "iez, and IHDE (Deng et al. 2018): dominant directions or the mean heading, on straights",
                 lambda r: corrected_track(r, _ihde(r), name="ihde"),
+                directions="all",
             ),
             Method(
                 "ihde-learned",
                 "ihde with directions learned from the walk, and no mean heading",
                 lambda r: corrected_track(r, _learning(r), name="ihde-learned"),
+                directions="count",
             ),
             Method(
                 "ihde-jimenez",
                 "iez, and iHDE (Jimenez 2011): dominant directions on straights, trusted by their nearness",
                 lambda r: corrected_track(r, _jimenez(r), name="ihde-jimenez"),
+                directions="all",
             ),
             Method(
                 "hde-paper",
                 "hde on the filter of iez-paper",
                 lambda r: corrected_track(r, _hde(r), FilterSettings.paper(), name="hde-paper"),
+                directions="all",
             ),
             Method(
                 "ihde-paper",
                 "ihde on the filter of iez-paper",
                 lambda r: corrected_track(r, _ihde(r), FilterSettings.paper(), name="ihde-paper"),
+                directions="all",
             ),
         )
     }
@@ -130,6 +145,17 @@ def require_methods(names: Iterable[str]) -> None:
     for name in names:
         if name not in METHODS:
             raise InputError(f"method {name!r} is unknown, expected one of {', '.join(METHODS)}")
+
+
+def require_directed(name: str, directions: int | None, reference: float | None) -> None:
+    """Raise InputError when a method cannot go by the dominant directions that it is told; None is untold."""
+    takes = METHODS[name].directions
+    if takes == "none" and (directions is not None or reference is not None):
+        able = ", ".join(method.name for method in METHODS.values() if method.directions != "none")
+        raise InputError(f"method {name!r} goes by no dominant directions; these do: {able}")
+    if takes == "count" and reference is not None:
+        raise InputError(f"method {name!r} learns where its dominant directions are, and cannot be told one")
+    DirectionParams(count=4 if directions is None else directions, reference=reference)
 
 
 def tracks(reckoning: Reckoning, methods: Iterable[str]) -> dict[str, Track]:

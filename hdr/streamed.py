@@ -18,11 +18,17 @@ class StreamedReckoning(Reckoning):
     Parameters
     ----------
     run_through : makes the footfalls, when they are asked for
-    start : where the walk starts
+    start, directions, reference : as of `Reckoning`
     """
 
-    def __init__(self, run_through: Callable[[], Footfalls], start: StartPose) -> None:
-        vars(self).update(run_through=run_through, start=start)
+    def __init__(
+        self,
+        run_through: Callable[[], Footfalls],
+        start: StartPose,
+        directions: int = 4,
+        reference: float | None = None,
+    ) -> None:
+        vars(self).update(run_through=run_through, start=start, directions=directions, reference=reference)
 
     @cached_property
     def footfalls(self) -> Footfalls:

@@ -35,11 +35,19 @@ HDR_UNITS: Mapping[str, str] = {
 
 @dataclass(frozen=True)
 class Reckoning:
-    """A recording, where it starts, and its footfalls, computed once for all the methods that ask."""
+    """A recording, where it starts, and its footfalls, computed once for all the methods that ask.
+
+    Attributes
+    ----------
+    directions : how many dominant directions, evenly spaced, a method goes by that goes by any
+    reference : rad, one of them; None for the heading at the start
+    """
 
     recording: Recording
     start: StartPose = field(default_factory=StartPose)
     pdr: PdrParams = field(default_factory=PdrParams)
+    directions: int = 4
+    reference: float | None = None
 
     @cached_property
     def footfalls(self) -> Footfalls:

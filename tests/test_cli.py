@@ -132,6 +132,15 @@ def test_a_track_has_one_row_a_footfall_and_the_methods_evidence(cli, here):
     np.testing.assert_allclose(turned["x"], -columns["y"], atol=1e-9)
 
 
+def test_a_track_is_told_the_directions_of_its_building(cli, here):
+    def heading(options):
+        assert cli(f"track rec.parquet --method ihde --heading 15 {options} -o t.parquet")[0] == 0
+        return read_table("t.parquet")[0]["heading"]
+
+    np.testing.assert_allclose(heading("--reference 105"), heading(""), atol=1e-9)
+    assert np.abs(heading("--reference 18 --directions 8") - heading("")).max() > 1e-3
+
+
 def test_a_csv_gives_the_same_track(cli, here):
     write_csv("rec.csv", read_table("rec.parquet")[0])
     assert cli("track rec.csv --method pdr -o csv.parquet")[0] == 0

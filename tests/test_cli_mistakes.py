@@ -74,6 +74,8 @@ REFUSED = [
     ("run short.toml --walks two", "'--walks'.* integer"),
     ("walk short.toml -o w.parquet --rate nan", "'--rate'.* nan .*finite"),
     ("track rec.parquet -o t.parquet --heading inf", "'--heading'.* inf .*finite"),
+    ("track rec.parquet -o t.parquet --method hde --reference nan", "'--reference'.* nan .*finite"),
+    ("track rec.parquet -o t.parquet --method hde --directions 0", "'--directions'.* 1"),
     ("allan --hours nan", "'--hours'"),
     # Names
     ("run loop", r"scenario 'loop': neither a stock scenario \(.*closed-loop.*\) nor"),
@@ -88,6 +90,14 @@ REFUSED = [
     ("record walk.parquet --imu nimo -o r.parquet", "imu = 'nimo'"),
     ("record walk.parquet --without magic -o r.parquet", r"effect 'magic' does not exist \(expected scale,"),
     ("track rec.parquet --method magic -o t.parquet", "method 'magic' is unknown"),
+    (
+        "track rec.parquet --directions 8 -o t.parquet",
+        "method 'hdr' goes by no dominant directions; these do: hde",
+    ),
+    (
+        "track rec.parquet --method ihde-learned --reference 30 -o t.parquet",
+        "method 'ihde-learned' learns where its dominant directions are",
+    ),
     # Scenarios
     ("run broken.toml", "broken.toml: not valid TOML .*line"),
     (
