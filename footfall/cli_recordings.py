@@ -44,12 +44,16 @@ def record(
     outdoors: Annotated[
         float, typer.Option(help="Temperature where it is walked, degC.", callback=finite)
     ] = 20.0,
+    format: FormatOption = "auto",
+    unit: UnitOption = None,
+    rate: RateOption = None,
 ) -> None:
     """Record a walk with one individual IMU: the truth with that sensor's errors.
 
-    With --from-recording a real foot walks, and what the IMU adds to its recording is known.
+    With --from-recording a real foot walks, and what the IMU adds to its recording is known; --format, --unit
+    and --rate tell how to read it.
     """
-    from footfall.formats import read
+    from footfall.formats import parse_units, read
     from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
     from footfall.recording import write_recording
     from footfall.simulate.from_recording import add_errors
@@ -62,17 +66,19 @@ def record(
         require_output(output, ".parquet", from_recording)
     else:
         raise InputError("record: expected either a walk or --from-recording with a recording")
-    unit = draw_unit(load_spec(imu), unit_seed)
+    if walk is not None and (format != "auto" or unit or rate is not None):
+        raise InputError("record: --format, --unit and --rate tell how to read --from-recording, not a walk")
+    worn = draw_unit(load_spec(imu), unit_seed)
     air = TemperatureProfile.step(indoors, outdoors)
     with ERR.status("recording"):
         if walk is not None:
             recording = record_walk(
-                read_walk(walk), unit, seed=unit_seed, temperature=air, without=without or ()
+                read_walk(walk), worn, seed=unit_seed, temperature=air, without=without or ()
             )
         else:
             assert from_recording is not None
-            real, _ = read(from_recording)
-            recording = add_errors(real, unit, seed=unit_seed, temperature=air, without=without or ())
+            real, _ = read(from_recording, format, sizes=parse_units(unit or ()), rate_hz=rate)
+            recording = add_errors(real, worn, seed=unit_seed, temperature=air, without=without or ())
         write_recording(recording, output)
     say(f"{len(recording.t)} samples: {output}")
 

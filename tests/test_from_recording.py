@@ -6,6 +6,7 @@ from commands import expect_one_sentence
 from scipy.spatial.transform import Rotation
 from synthetic_foot import walk
 
+from footfall.conventions import GRAVITY
 from footfall.errors import InputError
 from footfall.models.imu import EFFECTS, ImuSpec, TemperatureProfile, TriadSpec, draw_unit, load_spec
 from footfall.models.imu.spec import ThermalSpec
@@ -101,3 +102,19 @@ def test_from_the_command_line(real, cli, tmp_path, monkeypatch):
     expect_one_sentence(
         *cli("record --from-recording real.parquet -o real.parquet"), "would overwrite what it is made from"
     )
+
+
+def test_a_recording_of_other_units_is_told_on_the_command_line(real, cli, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_recording(real, "real.parquet")
+    columns = np.column_stack([np.degrees(real.gyro), real.accel / GRAVITY])
+    names = ",".join(f"{sensor}_{axis}" for sensor in ("gyro", "accel") for axis in "xyz")
+    np.savetxt("bare.csv", columns, delimiter=",", header=names, comments="")
+    told = f"--unit gyro=deg/s --unit accel=g --rate {1 / (real.t[1] - real.t[0])}"
+    assert cli(f"record --from-recording bare.csv --format csv {told} -o bare.parquet")[0] == 0
+    assert cli("record --from-recording real.parquet -o rec.parquet")[0] == 0
+    bare, rec = read_recording("bare.parquet"), read_recording("rec.parquet")
+    np.testing.assert_allclose(bare.gyro, rec.gyro, atol=1e-6)
+    np.testing.assert_allclose(bare.accel, rec.accel, atol=1e-6)
+    for flag in ("--rate 200", "--format xio", "--unit gyro=deg/s"):
+        expect_one_sentence(*cli(f"record walk.parquet {flag} -o x.parquet"), "tell how to read --from-rec")
