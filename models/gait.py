@@ -32,14 +32,14 @@ _KNEE = {
     65: 53.5, 70: 61.5, 73: 63, 77: 61, 80: 56, 85: 38, 90: 16, 95: 3,
 }  # fmt: skip
 _ANKLE = {
-    0: 8, 3: 5, 7: 0, 10: 0.5, 15: 4.5, 20: 8, 30: 11, 40: 12.5, 45: 12.5, 50: 9, 55: 0, 60: -13, 63: -18,
+    0: 8, 3: 3, 7: -4, 10: -0.5, 15: 5, 20: 8.6, 30: 10, 40: 9.4, 45: 9.4, 50: 7, 55: 0, 60: -13, 63: -18,
     66: -16.5, 70: -9.5, 75: -1, 80: 4, 85: 5, 90: 6, 95: 8,
 }  # fmt: skip
 # The foot lands on the heel's outer edge, pronates, and supinates in push-off; in swing its toes turn out
 # and, with the landing, back.
 _SUBTALAR = {
-    0: 6, 3: 5, 8: -1, 15: -2, 30: -2, 45: -1, 52: 0, 58: 4, 64: 7, 70: 5, 75: 2, 80: 0.5, 86: 0, 91: 1,
-    95: 3.5,
+    0: 6, 3: 5, 8: -1, 15: -2, 30: -2, 45: -1, 52: 0, 58: 2.5, 64: 1, 70: -2, 75: -4.5, 80: -7.5, 86: -9, 91: -5,
+    95: 1.5,
 }  # fmt: skip
 _TOES_OUT = {
     0: 1, 4: -0.5, 10: 0, 35: 0, 58: 0, 62: 1, 66: 3, 70: 6, 75: 9.5, 80: 12, 85: 13.5, 90: 13, 94: 9.5,
@@ -80,7 +80,7 @@ def _table() -> np.ndarray:
         "knee": _curve(_KNEE),
         "ankle": _curve(_ANKLE),
         "subtalar": _curve(_SUBTALAR),
-        "hip_rotation": -_curve(_TOES_OUT),
+        "hip_rotation": -0.4 * _curve(_TOES_OUT),
     }
     table = np.zeros((N_PHASE, N_SERVOS))
     for side, offset in (("r", 0), ("l", N_PHASE // 2)):
