@@ -43,7 +43,7 @@ class Servo:
 _LEG_SERVOS = {
     "hip_flexion": Servo(500, 40, -200, 200),
     "hip_adduction": Servo(500, 40, -150, 150),
-    "hip_rotation": Servo(250, 12, -80, 80),
+    "hip_rotation": Servo(250, 18, -80, 80),
     "knee": Servo(400, 25, -180, 200),
     "ankle": Servo(300, 12, -160, 60),
     "subtalar": Servo(150, 6, -50, 50),
@@ -119,7 +119,7 @@ MOUNTS = {
 
 @dataclass(frozen=True)
 class Ground:
-    """A grid of heights: `heights[j, i]` (m) at x = x0 + i cell, y = y0 + j cell."""
+    """A heightfield: `heights[j, i]` (m) at x = x0 + i cell, y = y0 + j cell."""
 
     x0: float
     y0: float
@@ -132,18 +132,15 @@ def build_body(
     *,
     timestep: float,
     mount: Mount | None = None,
-    sloping: bool = False,
-    scenery: Ground | None = None,
+    ground: Ground | None = None,
 ) -> mujoco.MjModel:
-    """Compile the walker.
+    """Compile the walker on level ground or on a heightfield.
 
     Parameters
     ----------
     timestep : s
     mount : adds sensors `imu_pos`, `imu_quat` (of the IMU site) after the control sensors
-    sloping : each foot treads on a plane of its own, which `simulate.ground.tread` lays under it; else both
-        on one level plane
-    scenery : a heightfield to look at; nothing touches it
+    ground : level when None
     """
     spec = mujoco.MjSpec()
     spec.modelname = "footfall walker"
@@ -162,9 +159,7 @@ def build_body(
     spec.visual.headlight.ambient = [0.35, 0.35, 0.35]
     spec.visual.map.shadowclip = 4
 
-    _add_ground(spec, build, sloping)
-    if scenery is not None:
-        _add_scenery(spec, scenery)
+    _add_ground(spec, build, ground)
     pelvis = spec.worldbody.add_body(name="pelvis", pos=[0, 0, 1])
     pelvis.add_freejoint(name="root")
     # The sun goes along, so that the shadow's resolution is spent on the walker.
@@ -231,44 +226,30 @@ def _contact(build: Build) -> dict:
     }
 
 
-# A foot's bit in the contact masks of the ground that it may touch.
-_TOUCHES = {"r": 1, "l": 2}
-
-
-def _add_ground(spec: mujoco.MjSpec, build: Build, sloping: bool) -> None:
-    """One level plane, or one for each foot: those are mocap bodies, right and left."""
-    plane = {"type": mujoco.mjtGeom.mjGEOM_PLANE, "size": [0, 0, 1], "material": "paving", "conaffinity": 0}
-    plane |= _contact(build)
+def _add_ground(spec: mujoco.MjSpec, build: Build, ground: Ground | None) -> None:
+    world = spec.worldbody
     add_sky_and_paving(spec)
-    if not sloping:
-        spec.worldbody.add_geom(name="ground", contype=sum(_TOUCHES.values()), **plane)
+    common = {"name": "ground", "contype": 1, "conaffinity": 0, "material": "paving"}
+    common |= _contact(build)
+    if ground is None:
+        world.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], **common)
         return
-    for side, bit in _TOUCHES.items():
-        under = spec.worldbody.add_body(name=f"ground_{side}", mocap=True)
-        under.add_geom(name=f"ground_{side}", contype=bit, group=4, **plane)
-
-
-def _add_scenery(spec: mujoco.MjSpec, ground: Ground) -> None:
-    """A heightfield that is only seen."""
     rows, columns = ground.heights.shape
     low, high = float(ground.heights.min()), float(ground.heights.max())
     span = max(high - low, 1e-3)
     half_x, half_y = (columns - 1) * ground.cell / 2, (rows - 1) * ground.cell / 2
     spec.add_hfield(
-        name="scenery",
+        name="ground",
         nrow=rows,
         ncol=columns,
         size=[half_x, half_y, span, 1.0],
         userdata=((ground.heights - low) / span).astype(float).ravel(),
     )
-    spec.worldbody.add_geom(
-        name="scenery",
+    world.add_geom(
         type=mujoco.mjtGeom.mjGEOM_HFIELD,
-        hfieldname="scenery",
+        hfieldname="ground",
         pos=[ground.x0 + half_x, ground.y0 + half_y, low],
-        material="paving",
-        contype=0,
-        conaffinity=0,
+        **common,
     )
 
 
@@ -298,8 +279,7 @@ def _add_leg(pelvis: mujoco.MjsBody, side: str, build: Build) -> None:
     foot = shank.add_body(name=f"foot_{side}", pos=[0, 0, -shank_length])
     _inertial(foot, [0.05, 0, -0.04], 1.15, np.array([0.0012, 0.005, 0.005]))
     joints(foot, "ankle", "subtalar")
-    touch = {"contype": 0, "conaffinity": _TOUCHES[side], "mass": 0, "rgba": SHOE, "group": 1}
-    touch |= _contact(build)
+    touch = {"contype": 0, "conaffinity": 1, "mass": 0, "rgba": SHOE, "group": 1} | _contact(build)
     # Two long, flat ellipsoids side by side: the shoe's sole, on which the foot rolls from heel to ball.
     sole, length = -ANKLE_HEIGHT, build.foot
     for name, y in (("in", -sign * SOLE_HALF_GAP), ("out", sign * SOLE_HALF_GAP)):

@@ -12,15 +12,7 @@ from numba.extending import register_jitable
 
 from footfall.models import gait
 from footfall.simulate._elementwise import choose
-from footfall.simulate.state import (
-    ACTION_SCALE,
-    AMPLITUDE,
-    CADENCE,
-    TOE_OUT_LEFT,
-    TOE_OUT_RIGHT,
-    TWIST,
-    WIDTH,
-)
+from footfall.simulate.state import ACTION_SCALE, AMPLITUDE, CADENCE, TOE_OUT_LEFT, TOE_OUT_RIGHT, WIDTH
 
 _LEG_LENGTH = 0.9  # m, turns a step width into an adduction
 _WIDER = 0.03  # m by which each leg is set wider while stopping
@@ -28,10 +20,9 @@ _SLEW_S = 0.12
 _FROZEN = 0.06  # of the stride after a heel strike, where the phase of a stand rests
 
 
-# The reference gait: tables (phases, 17) rad, and per servo (17,) what scales, shifts and leans it.
+# The reference gait: a table (phases, 17) rad, and per servo (17,) what scales, shifts and leans it.
 _PARTS = {
     "table": gait.TABLE,
-    "twist": gait.TWIST,
     "swings": gait.SWINGS,
     "bends": gait.BENDS,
     "adduction": gait.mask("hip_adduction"),
@@ -64,7 +55,7 @@ def slew(s):  # type: ignore[no-untyped-def]
     """Variability goes to its goals; who is about to stop widens its steps."""
     braking = (s.speed_goal < 0.2) & (s.speed < 0.6) & np.logical_not(s.closing)
     widen = choose(braking, _WIDER, 0.0)
-    for i in range(len(s.varied)):
+    for i in range(5):
         goal = s.varied_goal[i] + (widen if i == WIDTH else 0.0)
         s.varied[i] += (goal - s.varied[i]) * (s.dt / _SLEW_S)
 
@@ -106,7 +97,7 @@ def targets(s, ref, rows, out):  # type: ignore[no-untyped-def]
         for i in range(count):
             part = (i + 1) / count
             gate = s.gate_before + (s.gate - s.gate_before) * part
-            walking = ref.table[rows[i], j] * factor + offset + ref.twist[rows[i], j] * s.varied[TWIST]
+            walking = ref.table[rows[i], j] * factor + offset
             residual = (1 - part) * s.residual[j] + part * s.next_residual[j]
             out[i, j] = gate * walking + (1 - gate) * standing + slope + ref.scale[j] * residual
 
@@ -118,8 +109,7 @@ def reference(s, ref, stagger, out):  # type: ignore[no-untyped-def]
     hip, knee = amplitudes(s)
     for j in range(len(ref.scale)):
         factor, offset, standing, slope = servo(s, ref, j, hip, knee, stagger)
-        walking = ref.table[row, j] * factor + offset + ref.twist[row, j] * s.varied[TWIST]
-        out[j] = s.gate * walking + (1 - s.gate) * standing + slope
+        out[j] = s.gate * (ref.table[row, j] * factor + offset) + (1 - s.gate) * standing + slope
 
 
 # What a kernel fills is passed to it: an array that it returned would cost more than the kernel.

@@ -9,19 +9,18 @@ from numba import njit
 from numba.extending import register_jitable
 
 from footfall.simulate._elementwise import choose, clip
-from footfall.simulate.state import AMPLITUDE, CADENCE, TOE_OUT_LEFT, TOE_OUT_RIGHT, TWIST, WIDTH
+from footfall.simulate.state import AMPLITUDE, CADENCE, TOE_OUT_LEFT, TOE_OUT_RIGHT, WIDTH
 
 CADENCE_SD, CADENCE_SLOW_SD, CADENCE_SLOW_RHO = 0.026, 0.013, 0.9
 AMPLITUDE_SD = 0.03
 WIDTH_SD, WIDTH_RHO = 0.010, 0.5
 TOE_OUT_SD = math.radians(1.2)
-TWIST_SD = math.radians(7.0)  # gyros of real shoes: 16 to 29 deg/s (SD) of yaw
 _SLOW_GAIN = CADENCE_SLOW_SD * math.sqrt(1 - CADENCE_SLOW_RHO**2)
 
 
 @register_jitable
 def draw(s, normal):  # type: ignore[no-untyped-def]
-    """New goals of the walker's variability from six standard normal numbers."""
+    """New goals of the walker's variability from five standard normal numbers."""
     level, mean, goal = s.level, s.varied_mean, s.varied_goal
     # 0 while the right foot stands (the left one swings), 1 otherwise
     left = np.floor(s.next_phase * 2) % 2 == 1
@@ -36,11 +35,10 @@ def draw(s, normal):  # type: ignore[no-untyped-def]
     toe_out = clip(normal[4] * TOE_OUT_SD * level, -0.1, 0.1)
     goal[TOE_OUT_RIGHT] = choose(left, mean[TOE_OUT_RIGHT] + toe_out, goal[TOE_OUT_RIGHT])
     goal[TOE_OUT_LEFT] = choose(left, goal[TOE_OUT_LEFT], mean[TOE_OUT_LEFT] + toe_out)
-    goal[TWIST] = clip(normal[5] * TWIST_SD * level, -0.3, 0.3)
 
 
 @njit(cache=True, nogil=True)
 def draw_all(state, rows, normal):  # type: ignore[no-untyped-def]
-    """`draw` for the walkers `rows` (m,) from `normal` (m, 6)."""
+    """`draw` for the walkers `rows` (m,) from `normal` (m, 5)."""
     for i in range(len(rows)):
         draw(state[rows[i]], normal[i])

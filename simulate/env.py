@@ -45,9 +45,9 @@ class Difficulty:
     speed: tuple[float, float] = (0.65, 1.95)
     slow: float = 0.12
     turn: float = 1.1
-    grade: float = 0.10
+    grade: float = 0.09
     stop: float = 0.3
-    stand: float = 0.25
+    stand: float = 0.2
     halt: float = 0.25
     kick: float = 0.08
     variability: float = 1.2
@@ -167,8 +167,7 @@ class Task:
     def _tilt_gravity(self, mask: np.ndarray) -> None:
         """Sloping ground is level ground under tilted gravity."""
         d, rng, walkers, n = self.difficulty, self.rng, self.walkers, int(mask.sum())
-        # Steep ones are the harder, and more often drawn.
-        tangent = d.grade * d.level * np.sqrt(rng.random(n)) * (rng.random(n) < 0.7)
+        tangent = rng.uniform(0, d.grade * d.level, n) * (rng.random(n) < 0.7)
         azimuth = rng.uniform(-np.pi, np.pi, n)
         up = np.stack([tangent * np.cos(azimuth), tangent * np.sin(azimuth), np.ones(n)], 1)
         up /= np.linalg.norm(up, axis=1)[:, None]

@@ -1,8 +1,4 @@
-"""The ground under a walker: its height and gradient, and the plane that each foot treads on.
-
-A heightfield under the feet would cost MuJoCo half as much again as level ground, and triangles have edges.
-A foot is short beside the bends of any street: where it treads, the ground is its tangent plane.
-"""
+"""Height and gradient of a heightfield where the walker is."""
 
 from __future__ import annotations
 
@@ -10,15 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from footfall.models import body
 from footfall.models.body import Ground
-from footfall.simulate._ground_kernels import bilinear, lay
-
-Look = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-N_PLANES = 14  # numbers that pose the planes of two feet: positions (2, 3), then quaternions (2, 4), w first
+from footfall.simulate._ground_kernels import bilinear
 
 
-def ground_lookup(ground: Ground) -> Look:
+def ground_lookup(ground: Ground) -> Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
     """(x, y) (n,) each -> height (n,) m and gradient (n, 2), bilinear in the grid."""
     heights = np.ascontiguousarray(ground.heights, dtype=float)
     x0, y0, cell = float(ground.x0), float(ground.y0), float(ground.cell)
@@ -28,15 +20,3 @@ def ground_lookup(ground: Ground) -> Look:
         return height, gradient
 
     return look
-
-
-def tread(planes: np.ndarray, sensor: np.ndarray, look: Look) -> None:
-    """Lay the ground's tangent plane under every foot that carries no load; under the others it stays.
-
-    Parameters
-    ----------
-    planes : (n, N_PLANES) changed in place
-    sensor : (n, n_sensor) of `models.body`
-    """
-    feet = sensor[:, body.SENSOR_FOOT_POSITION].reshape(-1, 3)
-    lay(planes, sensor, *look(feet[:, 0], feet[:, 1]))

@@ -155,8 +155,7 @@ class Outing:
     def __init__(self, plan: Plan, gains: np.ndarray, *, stand: float) -> None:
         subject, small = plan.subject, _shrunk(plan)
         route, step = small.route, PHYSICS_STEP / subject.time_scale
-        sloping = small.ground is not None
-        model = build_body(subject.build, timestep=step, mount=plan.mount, sloping=sloping)
+        model = build_body(subject.build, timestep=step, mount=plan.mount, ground=small.ground)
         self.plan, self._scale, self._stands = small, subject.scale, False
         self.walkers = Walkers(
             [model],

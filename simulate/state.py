@@ -20,9 +20,8 @@ ACTION_SCALE = 3.3 * np.array([0.2, 0.2, 0.2] + [0.35, 0.25, 0.25, 0.35, 0.25, 0
 
 CREEP = 0.30  # m/s at most, of a walker that wishes to stand and drifts backwards
 
-# Places in `varied`: cadence, hip excursion (both relative), step width (m), toe-out of each foot (rad), and
-# how far the swinging foot turns out on its way (rad).
-CADENCE, AMPLITUDE, WIDTH, TOE_OUT_RIGHT, TOE_OUT_LEFT, TWIST = range(6)
+# Places in `varied`: cadence, hip excursion (both relative), step width (m), toe-out of each foot (rad).
+CADENCE, AMPLITUDE, WIDTH, TOE_OUT_RIGHT, TOE_OUT_LEFT = range(5)
 
 WALKER = np.dtype(
     [
@@ -52,9 +51,9 @@ WALKER = np.dtype(
         ("level", float),  # of variability
         ("slow", float),  # part of the cadence
         ("asymmetry", float),
-        ("varied", float, 6),
-        ("varied_goal", float, 6),
-        ("varied_mean", float, 6),
+        ("varied", float, 5),
+        ("varied_goal", float, 5),
+        ("varied_mean", float, 5),
         # standing
         ("gate", float),  # 0 stands, 1 walks
         ("gate_before", float),  # this control step

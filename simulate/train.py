@@ -31,7 +31,7 @@ from footfall.tables import replacing
 
 ENVS = 64
 _CANDIDATES, _REPEATS, _TRIAL_S = 16, 4, 6.0
-_KEEP_FROM, _KEEP_EVERY = 0.7, 0.05  # of the planned samples: checkpoints among which the best is chosen
+_KEEP_FROM, _KEEP_EVERY = 0.6, 0.05  # of the planned samples: checkpoints among which the best is chosen
 
 
 def tune_gains(seed: int, generations: int, threads: int) -> np.ndarray:
@@ -192,7 +192,7 @@ def main() -> None:
     )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--samples", type=float, default=14e6, help="control steps to learn from")
-    parser.add_argument("--generations", type=int, default=60, help="of CMA-ES for the feedback gains")
+    parser.add_argument("--generations", type=int, default=160, help="of CMA-ES for the feedback gains")
     parser.add_argument("--threads", type=int, default=2, help="for the physics")
     arguments = parser.parse_args()
     train(arguments.out, arguments.seed, int(arguments.samples), arguments.generations, arguments.threads)

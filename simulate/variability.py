@@ -1,8 +1,8 @@
 """What keeps the gait from being a metronome: seeded scatter of timing, step length, width and toe-out.
 
 Per step: cadence N(0, 2.6 %) plus a slow AR(1) part (1.3 %, rho 0.9), hip excursion N(0, 3 %), step width
-AR(1) about 1 cm, toe-out of the landing foot N(0, 1.2 deg), and how far it turns out on its way and back
-N(0, 7 deg); each slews within 120 ms. A person's habits shift the means.
+AR(1) about 1 cm, toe-out of the landing foot N(0, 1.2 deg); each slews within 120 ms. A person's habits shift
+the means.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from footfall.simulate.state import WIDTH as WIDTH
 
 
 class Variability:
-    """Modulation of n walkers: cadence, hip excursion (relative), step width (m), toe-outs and twist (rad).
+    """Modulation of n walkers: cadence, hip excursion (relative), step width (m), toe-out right, left (rad).
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class Variability:
     Attributes
     ----------
     level : (n,) factor on every standard deviation
-    value : (n, 6) as applied, in the order of `state`; the control step slews it towards `target` (n, 6)
+    value : (n, 5) as applied; the control step slews it towards `target` (n, 5)
     """
 
     def __init__(self, state: np.ndarray) -> None:
@@ -38,10 +38,10 @@ class Variability:
         self.slow[mask] = 0
         self.asymmetry[mask] = [habit.asymmetry for habit in habits]
         self.mean[mask] = [
-            (habit.cadence - 1, 0.0, habit.step_width, habit.toe_out, habit.toe_out, 0.0) for habit in habits
+            (habit.cadence - 1, 0.0, habit.step_width, habit.toe_out, habit.toe_out) for habit in habits
         ]
         self.value[mask] = self.target[mask] = self.mean[mask]
 
     def draw(self, rows: np.ndarray, rng: np.random.Generator) -> None:
         """New targets for the walkers `rows` (m,), which begin a step."""
-        draw_all(self._state, rows, rng.standard_normal((len(rows), 6)))
+        draw_all(self._state, rows, rng.standard_normal((len(rows), 5)))
