@@ -10,7 +10,7 @@ from typing import NamedTuple
 from footfall.errors import InputError
 from footfall.formats.condition import Findings
 from footfall.formats.reader import WHOLE_ROWS, Blocks, open_source, read
-from footfall.hdr.methods import METHODS, require_directed, require_methods
+from footfall.hdr.methods import METHODS, require_methods, told_directions
 from footfall.hdr.streamed import StreamedReckoning
 from footfall.hdr.tracks import Reckoning
 from footfall.pdr.detectors import require_detector
@@ -50,8 +50,8 @@ def track_file(
     format, sizes, rate_hz : as of `footfall.formats.read`
     bias_s : s, T_bias; None for as long as the recording rests, at most 25
     start : where the walk starts
-    directions, reference : dominant directions, as of `Reckoning`, for methods that go by them: how many (4
-        when None), and one of them (rad; None for the heading at the start)
+    directions, reference : dominant directions, for methods that go by them: how many (None for 4), and one
+        of them (rad; None for the heading at the start)
 
     Raises
     ------
@@ -60,12 +60,11 @@ def track_file(
         all samples, and too many of them.
     """
     require_methods([method])
-    require_directed(method, directions, reference)
-    count = 4 if directions is None else directions
     params = PdrParams(detector=require_detector(detector))
     params = params if bias_s is None else replace(params, bias_s=bias_s)
     rest = still_time if bias_s is None else None
     start = start or StartPose()
+    told = told_directions(method, directions, reference, start)
     source = open_source(path, format, sizes, rate_hz)
     used = params.bias_s
 
@@ -80,10 +79,10 @@ def track_file(
             if rest is not None:
                 used = rest(recording, used)
             params = replace(params, bias_s=used)
-            track = METHODS[method].run(Reckoning(recording, start, params, count, reference))
+            track = METHODS[method].run(Reckoning(recording, start, params, told))
         else:
             blocks = Blocks(path, source)
-            track = METHODS[method].run(StreamedReckoning(run_through, start, count, reference))
+            track = METHODS[method].run(StreamedReckoning(run_through, start, told))
             findings = blocks.findings
     except InputError as error:
         sentence = str(error).removeprefix("recording: ").removeprefix(f"{path}: ")

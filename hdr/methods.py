@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Literal
 
@@ -40,13 +40,12 @@ class Method:
 
 
 def _counted(reckoning: Reckoning) -> DirectionParams:
-    """Dominant directions, counted from the heading at the start unless one of them is known.
+    """Dominant directions, counted from the heading at the start unless they are told.
 
     That heading is 0 deg in the papers. So the foot may point beside the path: at the start it does so as
     much as later.
     """
-    reference = reckoning.start.heading if reckoning.reference is None else reckoning.reference
-    return DirectionParams(count=reckoning.directions, reference=reference)
+    return reckoning.directions or DirectionParams(reference=reckoning.start.heading)
 
 
 def _hde(reckoning: Reckoning) -> Hde:
@@ -58,9 +57,7 @@ def _ihde(reckoning: Reckoning) -> Ihde:
 
 
 def _learning(reckoning: Reckoning) -> Ihde:
-    return Ihde(
-        IhdeParams(fallback=False, directions=DirectionParams(count=reckoning.directions, reference=None))
-    )
+    return Ihde(IhdeParams(fallback=False, directions=replace(_counted(reckoning), reference=None)))
 
 
 def _jimenez(reckoning: Reckoning) -> Jimenez:
@@ -101,7 +98,7 @@ METHODS: Mapping[str, Method] = MappingProxyType(
             ),
             Method(
                 "hde",
-                "iez, and always the nearest of four dominant directions for the heading",
+                "iez, and always the nearest dominant direction for the heading",
                 lambda r: corrected_track(r, _hde(r), name="hde"),
                 directions="all",
             ),
@@ -147,15 +144,26 @@ def require_methods(names: Iterable[str]) -> None:
             raise InputError(f"method {name!r} is unknown, expected one of {', '.join(METHODS)}")
 
 
-def require_directed(name: str, directions: int | None, reference: float | None) -> None:
-    """Raise InputError when a method cannot go by the dominant directions that it is told; None is untold."""
+def told_directions(
+    name: str, directions: int | None, reference: float | None, start: StartPose
+) -> DirectionParams | None:
+    """The dominant directions that a method is told: how many, and one of them (rad); None for untold.
+
+    Raises
+    ------
+    InputError
+        The method goes by none or learns what it is told; or there can be no such directions.
+    """
+    if directions is None and reference is None:
+        return None
     takes = METHODS[name].directions
-    if takes == "none" and (directions is not None or reference is not None):
+    if takes == "none":
         able = ", ".join(method.name for method in METHODS.values() if method.directions != "none")
         raise InputError(f"method {name!r} goes by no dominant directions; these do: {able}")
     if takes == "count" and reference is not None:
         raise InputError(f"method {name!r} learns where its dominant directions are, and cannot be told one")
-    DirectionParams(count=4 if directions is None else directions, reference=reference)
+    counted = DirectionParams(reference=start.heading if reference is None else reference)
+    return counted if directions is None else replace(counted, count=directions)
 
 
 def tracks(reckoning: Reckoning, methods: Iterable[str]) -> dict[str, Track]:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import cached_property
 
 from footfall.errors import InputError
+from footfall.hdr.directions import DirectionParams
 from footfall.hdr.tracks import Reckoning
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.pdr import StartPose
@@ -18,17 +19,16 @@ class StreamedReckoning(Reckoning):
     Parameters
     ----------
     run_through : makes the footfalls, when they are asked for
-    start, directions, reference : as of `Reckoning`
+    start, directions : as of `Reckoning`
     """
 
     def __init__(
         self,
         run_through: Callable[[], Footfalls],
         start: StartPose,
-        directions: int = 4,
-        reference: float | None = None,
+        directions: DirectionParams | None = None,
     ) -> None:
-        vars(self).update(run_through=run_through, start=start, directions=directions, reference=reference)
+        vars(self).update(run_through=run_through, start=start, directions=directions)
 
     @cached_property
     def footfalls(self) -> Footfalls:

@@ -13,6 +13,7 @@ import numpy as np
 from footfall import __version__
 from footfall.hdr.correct import paper_positions as eq_12
 from footfall.hdr.correct import turned_positions
+from footfall.hdr.directions import DirectionParams
 from footfall.hdr.filtered import filter_track
 from footfall.hdr.hde import HDE_2010_UNITS, Hde2010Params, hde_2010
 from footfall.hdr.hdr import HdrParams, trace
@@ -39,15 +40,13 @@ class Reckoning:
 
     Attributes
     ----------
-    directions : how many dominant directions, evenly spaced, a method goes by that goes by any
-    reference : rad, one of them; None for the heading at the start
+    directions : that a method goes by that goes by any; None for four from the heading at the start
     """
 
     recording: Recording
     start: StartPose = field(default_factory=StartPose)
     pdr: PdrParams = field(default_factory=PdrParams)
-    directions: int = 4
-    reference: float | None = None
+    directions: DirectionParams | None = None
 
     @cached_property
     def footfalls(self) -> Footfalls:

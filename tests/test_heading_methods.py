@@ -15,7 +15,7 @@ from footfall.hdr.directions import DirectionParams, Directions
 from footfall.hdr.hde import Hde, Hde2010Params, HdeParams, hde_2010
 from footfall.hdr.ihde import Ihde, IhdeParams, evaluate, reference
 from footfall.hdr.jimenez import FilterHdr, FilterHdrParams, Jimenez, JimenezParams
-from footfall.hdr.methods import METHODS, Reckoning, require_directed, tracks
+from footfall.hdr.methods import METHODS, Reckoning, told_directions, tracks
 from footfall.hdr.tracks import corrected_track
 from footfall.pdr.filtering import Step, run_filter
 from footfall.pdr.ins import FilterSettings
@@ -278,34 +278,29 @@ def test_directions_turn_with_the_start(corridor, name):
     np.testing.assert_allclose(turned.heading - by, straight.heading, atol=1e-6)
 
 
+def told_heading(recording, name, directions=None, reference=None):
+    start = StartPose(heading=20 * DEG)
+    told = told_directions(name, directions, reference, start)
+    return tracks(Reckoning(recording, start, directions=told), [name])[name].heading
+
+
 @pytest.mark.parametrize("name", [method.name for method in METHODS.values() if method.directions == "all"])
 def test_directions_can_be_told(corridor, name):
     """Any one of the directions stands for all; without one they count from the heading at the start."""
-    start = StartPose(heading=20 * DEG)
-
-    def heading(**told):
-        return tracks(Reckoning(corridor[1], start, **told), [name])[name].heading
-
-    np.testing.assert_allclose(heading(reference=110 * DEG), heading(), atol=1e-9)
-    eight = heading(directions=8)
-    np.testing.assert_allclose(heading(directions=8, reference=-25 * DEG), eight, atol=1e-9)
+    untold = told_heading(corridor[1], name)
+    np.testing.assert_allclose(told_heading(corridor[1], name, 4, 110 * DEG), untold, atol=1e-9)
+    eight = told_heading(corridor[1], name, 8)
+    np.testing.assert_allclose(told_heading(corridor[1], name, 8, -25 * DEG), eight, atol=1e-9)
     if name != "ihde-paper":  # whose filter here turns away from all of them at once
-        beside = heading(reference=23 * DEG)  # corridors turned by 3 deg
-        assert np.abs(beside - heading()).max() > 0.3 * DEG
+        beside = told_heading(corridor[1], name, reference=23 * DEG)  # corridors turned by 3 deg
+        assert np.abs(beside - untold).max() > 0.3 * DEG
 
 
-@pytest.mark.parametrize("told", [{"directions": 8}, {"reference": 23 * DEG}])
-@pytest.mark.parametrize("name", METHODS)
-def test_directions_are_refused_where_they_would_change_nothing(corridor, name, told):
-    def heading(**told):
-        return tracks(Reckoning(corridor[1], StartPose(heading=20 * DEG), **told), [name])[name].heading
-
-    try:
-        require_directed(name, told.get("directions"), told.get("reference"))
-    except InputError:
-        np.testing.assert_array_equal(heading(**told), heading())
-    else:
-        assert METHODS[name].directions != "none"
+def test_the_directions_that_are_learned_can_be_counted(corridor):
+    """Three corridors 120 deg apart are not those of this building."""
+    four, three = (told_heading(corridor[1], "ihde-learned", count) for count in (4, 3))
+    np.testing.assert_array_equal(four, told_heading(corridor[1], "ihde-learned"))
+    assert np.abs(three - four).max() > 0.3 * DEG
 
 
 @pytest.mark.parametrize(

@@ -115,17 +115,19 @@ def test_a_file_in_blocks_makes_the_track_of_the_whole_file(tmp_path_factory, wa
     rows = np.sort(np.append(np.setdiff1d(np.arange(len(walked.t)), drop), twice)).astype(int)
     write_recording(walked, file)
     write_rows(file, walked, rows)
-    whole = track_file(file, "hdr", start=START)
+    ways = (("hdr", {}), ("hde-2010", {"directions": 8, "reference": 0.4}))
+    wholes = [track_file(file, method, start=START, **told) for method, told in ways]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("footfall.tracking.WHOLE_ROWS", 1000)
         patch.setattr("footfall.formats.table.BLOCK_ROWS", 2048)
         patch.setattr(stream, "WORK_ROWS", 1000)
-        found = track_file(file, "hdr", start=START)
+        in_blocks = [track_file(file, method, start=START, **told) for method, told in ways]
         with pytest.raises(InputError, match=r"long\.parquet: too long to be held at once"):
             track_file(file, "iez")
-    np.testing.assert_allclose(found.track.position, whole.track.position, rtol=0, atol=1e-9)
-    for key in ("rows", "doubled", "filled"):
-        assert getattr(found.findings, key) == getattr(whole.findings, key)
+    for found, whole in zip(in_blocks, wholes, strict=True):
+        np.testing.assert_allclose(found.track.position, whole.track.position, rtol=0, atol=1e-9)
+        for key in ("rows", "doubled", "filled"):
+            assert getattr(found.findings, key) == getattr(whole.findings, key)
 
 
 def write_rows(file, recording, rows):
