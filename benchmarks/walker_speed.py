@@ -1,6 +1,6 @@
 """What a walk costs, and how much of it is physics.
 
-Walks the first metres of a scenario, on level ground and on its heightfield, and gives CPU seconds for 20
+Walks the first metres of a scenario, on level ground and on its slopes, and gives CPU seconds for 20
 simulated minutes (scaled; building the body, which happens once, is added unscaled). The whole and MuJoCo's
 share of it come from a walk in which nothing but MuJoCo is timed, where the rest goes from another one. Then
 MuJoCo alone repeats the same physics: every control step from its recorded state under its recorded servo
@@ -57,12 +57,13 @@ REST = "record and calls"
 
 @dataclass(frozen=True)
 class Step:
-    """Physics of one control step: its model, state and targets, and the state that it came to."""
+    """Physics of one control step: its model, state and what drives it, and the state that it came to."""
 
     model: mujoco.MjModel
     noslip: int
     start: np.ndarray
-    target: np.ndarray
+    control: np.ndarray
+    spec: int
     end: np.ndarray
 
 
@@ -87,10 +88,10 @@ class Watch:
     def physics(self, work: Callable[..., Any]) -> Callable[..., Any]:
         """`work`, which is rollout, kept."""
 
-        def kept(own: Any, models: Any, data: Any, start: Any, target: Any, **keywords: Any) -> Any:
-            result = work(own, models, data, start, target, **keywords)
-            noslip = int(models[0].opt.noslip_iterations)
-            self.steps.append(Step(models[0], noslip, start.copy(), target, result[0][:, -1].copy()))
+        def kept(own: Any, models: Any, data: Any, start: Any, control: Any, **keywords: Any) -> Any:
+            result = work(own, models, data, start, control, **keywords)
+            noslip, end = int(models[0].opt.noslip_iterations), result[0][:, -1].copy()
+            self.steps.append(Step(models[0], noslip, start.copy(), control, keywords["control_spec"], end))
             return result
 
         return kept
@@ -135,12 +136,12 @@ def bare(steps: Sequence[Step], batch: int = 500) -> float:
             some = [step for step in steps if step.noslip == noslip]
             for first in range(0, len(some), batch):
                 rows = some[first : first + batch]
-                starts, targets, ends = (
+                starts, controls, ends = (
                     np.concatenate(parts)
-                    for parts in zip(*((row.start, row.target, row.end) for row in rows), strict=True)
+                    for parts in zip(*((row.start, row.control, row.end) for row in rows), strict=True)
                 )
                 start = time.process_time()
-                states, _ = alone.rollout(model, data, starts, targets)
+                states, _ = alone.rollout(model, data, starts, controls, control_spec=steps[0].spec)
                 seconds += time.process_time() - start
                 if not np.array_equal(states[:, -1], ends):
                     raise SystemExit("MuJoCo alone did not repeat the walk's states")
@@ -194,7 +195,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     # Without the long first stand, standing has about the share that it has in 20 minutes.
     plan = replace(plan, route=shortened(plan.route, chosen.metres), calibration=0.0)
     level = replace(plan, ground=None, route=replace(plan.route, z=np.zeros_like(plan.route.z)))
-    plans = {"level": level} | ({"heightfield": plan} if plan.ground is not None else {})
+    plans = {"level": level} | ({"slopes": plan} if plan.ground is not None else {})
     with err.status("walking"):
         found = {name: measure(one) for name, one in plans.items()}
     together = [replace(level, seed=level.seed + i) for i in range(chosen.processes)]

@@ -119,7 +119,7 @@ MOUNTS = {
 
 @dataclass(frozen=True)
 class Ground:
-    """A heightfield: `heights[j, i]` (m) at x = x0 + i cell, y = y0 + j cell."""
+    """A grid of heights: `heights[j, i]` (m) at x = x0 + i cell, y = y0 + j cell."""
 
     x0: float
     y0: float
@@ -132,15 +132,18 @@ def build_body(
     *,
     timestep: float,
     mount: Mount | None = None,
-    ground: Ground | None = None,
+    sloping: bool = False,
+    scenery: Ground | None = None,
 ) -> mujoco.MjModel:
-    """Compile the walker on level ground or on a heightfield.
+    """Compile the walker.
 
     Parameters
     ----------
     timestep : s
     mount : adds sensors `imu_pos`, `imu_quat` (of the IMU site) after the control sensors
-    ground : level when None
+    sloping : each foot treads on a plane of its own, which `simulate.ground.tread` lays under it; else both
+        on one level plane
+    scenery : a heightfield to look at; nothing touches it
     """
     spec = mujoco.MjSpec()
     spec.modelname = "footfall walker"
@@ -159,7 +162,9 @@ def build_body(
     spec.visual.headlight.ambient = [0.35, 0.35, 0.35]
     spec.visual.map.shadowclip = 4
 
-    _add_ground(spec, build, ground)
+    _add_ground(spec, build, sloping)
+    if scenery is not None:
+        _add_scenery(spec, scenery)
     pelvis = spec.worldbody.add_body(name="pelvis", pos=[0, 0, 1])
     pelvis.add_freejoint(name="root")
     # The sun goes along, so that the shadow's resolution is spent on the walker.
@@ -226,30 +231,44 @@ def _contact(build: Build) -> dict:
     }
 
 
-def _add_ground(spec: mujoco.MjSpec, build: Build, ground: Ground | None) -> None:
-    world = spec.worldbody
+# A foot's bit in the contact masks of the ground that it may touch.
+_TOUCHES = {"r": 1, "l": 2}
+
+
+def _add_ground(spec: mujoco.MjSpec, build: Build, sloping: bool) -> None:
+    """One level plane, or one for each foot: those are mocap bodies, right and left."""
+    plane = {"type": mujoco.mjtGeom.mjGEOM_PLANE, "size": [0, 0, 1], "material": "paving", "conaffinity": 0}
+    plane |= _contact(build)
     add_sky_and_paving(spec)
-    common = {"name": "ground", "contype": 1, "conaffinity": 0, "material": "paving"}
-    common |= _contact(build)
-    if ground is None:
-        world.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], **common)
+    if not sloping:
+        spec.worldbody.add_geom(name="ground", contype=sum(_TOUCHES.values()), **plane)
         return
+    for side, bit in _TOUCHES.items():
+        under = spec.worldbody.add_body(name=f"ground_{side}", mocap=True)
+        under.add_geom(name=f"ground_{side}", contype=bit, group=4, **plane)
+
+
+def _add_scenery(spec: mujoco.MjSpec, ground: Ground) -> None:
+    """A heightfield that is only seen."""
     rows, columns = ground.heights.shape
     low, high = float(ground.heights.min()), float(ground.heights.max())
     span = max(high - low, 1e-3)
     half_x, half_y = (columns - 1) * ground.cell / 2, (rows - 1) * ground.cell / 2
     spec.add_hfield(
-        name="ground",
+        name="scenery",
         nrow=rows,
         ncol=columns,
         size=[half_x, half_y, span, 1.0],
         userdata=((ground.heights - low) / span).astype(float).ravel(),
     )
-    world.add_geom(
+    spec.worldbody.add_geom(
+        name="scenery",
         type=mujoco.mjtGeom.mjGEOM_HFIELD,
-        hfieldname="ground",
+        hfieldname="scenery",
         pos=[ground.x0 + half_x, ground.y0 + half_y, low],
-        **common,
+        material="paving",
+        contype=0,
+        conaffinity=0,
     )
 
 
@@ -279,7 +298,8 @@ def _add_leg(pelvis: mujoco.MjsBody, side: str, build: Build) -> None:
     foot = shank.add_body(name=f"foot_{side}", pos=[0, 0, -shank_length])
     _inertial(foot, [0.05, 0, -0.04], 1.15, np.array([0.0012, 0.005, 0.005]))
     joints(foot, "ankle", "subtalar")
-    touch = {"contype": 0, "conaffinity": 1, "mass": 0, "rgba": SHOE, "group": 1} | _contact(build)
+    touch = {"contype": 0, "conaffinity": _TOUCHES[side], "mass": 0, "rgba": SHOE, "group": 1}
+    touch |= _contact(build)
     # Two long, flat ellipsoids side by side: the shoe's sole, on which the foot rolls from heel to ball.
     sole, length = -ANKLE_HEIGHT, build.foot
     for name, y in (("in", -sign * SOLE_HALF_GAP), ("out", sign * SOLE_HALF_GAP)):

@@ -1,9 +1,13 @@
-"""Compiled kernel of the ground's height."""
+"""Compiled kernels of the ground."""
 
 from __future__ import annotations
 
 import numpy as np
 from numba import njit
+
+from footfall.models import body
+
+_FOOT, _TOUCH = body.SENSOR_FOOT_POSITION.start, body.SENSOR_TOUCH.start
 
 
 @njit(cache=True, nogil=True)
@@ -22,3 +26,25 @@ def bilinear(heights, x0, y0, cell, x, y):  # type: ignore[no-untyped-def]
         gradient[k, 0] = ((1 - b) * (h10 - h00) + b * (h11 - h01)) / cell
         gradient[k, 1] = ((1 - a) * (h01 - h00) + a * (h11 - h10)) / cell
     return height, gradient
+
+
+@njit(cache=True, nogil=True)
+def lay(planes, sensor, height, gradient):  # type: ignore[no-untyped-def]
+    """Pose the planes (n, 14) of unloaded feet by the height (2n,) and gradient (2n, 2) where they are."""
+    for i in range(len(planes)):
+        for f in range(2):
+            touch = _TOUCH + 3 * f
+            if sensor[i, touch] + sensor[i, touch + 1] + sensor[i, touch + 2] > 0:
+                continue
+            k, position, quaternion = 2 * i + f, 3 * f, 6 + 4 * f
+            planes[i, position] = sensor[i, _FOOT + 3 * f]
+            planes[i, position + 1] = sensor[i, _FOOT + 3 * f + 1]
+            planes[i, position + 2] = height[k]
+            # The shortest turn from the vertical to the normal.
+            a, b = gradient[k, 0], gradient[k, 1]
+            normal = 1 / np.sqrt(1 + a * a + b * b)
+            w = np.sqrt((1 + normal) / 2)
+            planes[i, quaternion] = w
+            planes[i, quaternion + 1] = b * normal / (2 * w)
+            planes[i, quaternion + 2] = -a * normal / (2 * w)
+            planes[i, quaternion + 3] = 0.0

@@ -65,7 +65,7 @@ class Stage:
         else:
             patch = _patch(self._ground, walkers.qpos[0])
             step = walkers.models[0].opt.timestep
-            self.model = build_body(plan.subject.build, timestep=step, mount=plan.mount, ground=patch)
+            self.model = build_body(plan.subject.build, timestep=step, mount=plan.mount, scenery=patch)
             self._move_ground()
         model = self.model
         # Clipping and shadows to the walker's scale, not to that of a landscape of a kilometre.
@@ -82,7 +82,7 @@ class Stage:
     def look(self) -> None:
         """Take the walker's present pose and remember its prints: once a control step."""
         if self._ground is not None:
-            middle = self.model.geom("ground").pos
+            middle = self.model.geom("scenery").pos
             if np.abs(self.walkers.qpos[0, :2] - middle[:2]).max() > _PATCH_M / 4:
                 self._move_ground()
         self.data.qpos[:] = self.walkers.qpos[0]
@@ -106,7 +106,7 @@ class Stage:
         half = (np.array(patch.heights.shape[::-1]) - 1) * patch.cell / 2
         self.model.hfield_data[:] = ((patch.heights - low) / (high - low)).ravel()
         self.model.hfield_size[0, 2] = high - low
-        self.model.geom("ground").pos = patch.x0 + half[0], patch.y0 + half[1], low
+        self.model.geom("scenery").pos = patch.x0 + half[0], patch.y0 + half[1], low
         self.moves += 1
 
     def _sole(self, foot: str, x: float) -> np.ndarray:

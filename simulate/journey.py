@@ -155,7 +155,8 @@ class Outing:
     def __init__(self, plan: Plan, gains: np.ndarray, *, stand: float) -> None:
         subject, small = plan.subject, _shrunk(plan)
         route, step = small.route, PHYSICS_STEP / subject.time_scale
-        model = build_body(subject.build, timestep=step, mount=plan.mount, ground=small.ground)
+        sloping = small.ground is not None
+        model = build_body(subject.build, timestep=step, mount=plan.mount, sloping=sloping)
         self.plan, self._scale, self._stands = small, subject.scale, False
         self.walkers = Walkers(
             [model],

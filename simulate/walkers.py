@@ -8,7 +8,7 @@ units of the 1.75 m body (models.subject). The laws are compiled: `_balance_kern
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -22,6 +22,7 @@ from footfall.simulate._balance_kernels import act_all
 from footfall.simulate._gait_kernels import REFERENCE, reference_all, stride_all, targets_all
 from footfall.simulate._look_kernels import land_all, look_all
 from footfall.simulate.feedback import gain_records
+from footfall.simulate.ground import N_PLANES, Look, tread
 from footfall.simulate.heights import gait_heights, standing_height
 from footfall.simulate.observation import observe
 from footfall.simulate.state import WALKER
@@ -29,11 +30,10 @@ from footfall.simulate.variability import Variability
 
 CONTROL_INTERVAL = 0.030  # s, nominal: the physics step times `substeps`
 N_ACTION = body.N_SERVOS
-# What drives the physics: servo targets, and the forces on the bodies while there is a push.
-_CONTROL = int(mujoco.mjtState.mjSTATE_CTRL)
-_CONTROL_AND_FORCE = _CONTROL | int(mujoco.mjtState.mjSTATE_XFRC_APPLIED)
-
-Ground = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+# What drives the physics, in MuJoCo's order: servo targets; the forces on the bodies while there is a push;
+# where the ground slopes, the planes that the feet tread on.
+_CONTROL, _FORCE = int(mujoco.mjtState.mjSTATE_CTRL), int(mujoco.mjtState.mjSTATE_XFRC_APPLIED)
+_PLANES = int(mujoco.mjtState.mjSTATE_MOCAP_POS | mujoco.mjtState.mjSTATE_MOCAP_QUAT)
 
 
 class Trace(NamedTuple):
@@ -67,7 +67,7 @@ class Walkers:
     models : one per walker; they may differ in build, gravity and timestep, not in layout
     gains : (n, 32) or (32,) feedback gains
     rng : of the gait's variability
-    ground : (x, y) -> height (n,) and gradient (n, 2); level when None
+    ground : (x, y) -> height (n,) and gradient (n, 2), for models that are `sloping`; level when None
     threads : for the physics; 0 = the calling thread
     substeps : physics steps of a control step; as many as come nearest to CONTROL_INTERVAL when None
     """
@@ -78,7 +78,7 @@ class Walkers:
         gains: np.ndarray,
         *,
         rng: np.random.Generator,
-        ground: Ground | None = None,
+        ground: Look | None = None,
         threads: int = 0,
         substeps: int | None = None,
     ) -> None:
@@ -120,7 +120,8 @@ class Walkers:
         self.grade_forward, self.grade_left = state["grade_forward"], state["grade_left"]
         self._stepping = np.empty(n, dtype=np.intp)
         self._start = np.empty((n, 1 + self.qpos.shape[1] + self.qvel.shape[1]))
-        self._find_ground(self.qpos[:, 0], self.qpos[:, 1])
+        self._planes = np.zeros((n, N_PLANES))
+        self._find_ground(self.qpos, self.sensor)
         look_all(state)
 
     def close(self) -> None:
@@ -181,6 +182,8 @@ class Walkers:
         qvel[:, :3] += velocity_noise
 
         self.qpos[mask], self.qvel[mask], self.sensor[mask] = qpos, qvel, 0
+        # Nothing is sensed yet, but the ground under the feet is to be found.
+        self.sensor[mask, body.SENSOR_FOOT_POSITION] = np.tile(qpos[:, :3], 2)
         self.phase[mask], self.heading[mask] = (
             np.where(standing, np.floor(phase * 2) / 2 + 0.06, phase),
             heading,
@@ -193,7 +196,7 @@ class Walkers:
         self.variability.place(mask, variability, habits)
         self.gate.value[mask], self.gate.closing[mask] = np.where(standing, 0.0, 1.0), standing
         self.fresh[mask] = True
-        self._find_ground(self.qpos[:, 0], self.qpos[:, 1])
+        self._find_ground(self.qpos, self.sensor)
         look_all(self._state)
 
     @property
@@ -211,12 +214,14 @@ class Walkers:
         copy: np.ndarray = self._state["residual"].copy()
         return copy
 
-    def _find_ground(self, x: np.ndarray, y: np.ndarray) -> None:
+    def _find_ground(self, position: np.ndarray, sensor: np.ndarray) -> None:
+        """Under the pelvis (n, 2+), and under the feet."""
         state = self._state
         if self.ground is None:
             state["gradient"] = self.up[:, :2]
         else:
-            state["ground"], state["gradient"] = self.ground(x, y)
+            state["ground"], state["gradient"] = self.ground(position[:, 0], position[:, 1])
+            tread(self._planes, sensor, self.ground)
 
     def observe(self) -> np.ndarray:
         """(n, N_OBSERVATION) float32, mirrored to right stance."""
@@ -246,18 +251,21 @@ class Walkers:
         target, start = np.empty((n, k, N_ACTION)), self._start
         targets_all(state, REFERENCE, start, target)
         after, sensor = np.empty((n, k, start.shape[1])), np.empty((n, k, self._n_sensor))
-        control, spec = target, _CONTROL
+        control, spec = [target], _CONTROL
         if push is not None:
             force = np.zeros((n, k, self.models[0].nbody, 6))
             force[:, :, self._trunk, :3] = push[:, None]
-            control = np.concatenate([target, force.reshape(n, k, -1)], axis=2)
-            spec = _CONTROL_AND_FORCE
+            control.append(force.reshape(n, k, -1))
+            spec |= _FORCE
+        if self.ground is not None:
+            control.append(np.repeat(self._planes[:, None], k, axis=1))
+            spec |= _PLANES
         # The shapes are right by construction: unchecked, a call costs 50 us less.
         self._rollout.rollout(
             self.models,
             self._data,
             start,
-            control,
+            np.concatenate(control, axis=2) if len(control) > 1 else target,
             control_spec=spec,
             skip_checks=True,
             nstep=k,
@@ -265,7 +273,7 @@ class Walkers:
             sensordata=sensor,
         )
         if self.ground is not None:
-            self._find_ground(after[:, -1, 1], after[:, -1, 2])
+            self._find_ground(after[:, -1, 1:3], sensor[:, -1])
         land_all(state, after, sensor)
         nq = self.qpos.shape[1]
         return Trace(after[:, :, 1 : 1 + nq], after[:, :, 1 + nq :], sensor, target)

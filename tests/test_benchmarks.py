@@ -81,7 +81,7 @@ def test_walker_speed_accounts_for_every_second(scripts, short: str, tmp_path: P
     out = tmp_path / "out.json"
     scripts.walker_speed.main(["--scenario", short, "--metres", "8", "--json", str(out)])
     found = json.loads(out.read_text())["cpu_s"]
-    assert set(found) == {"level", "heightfield"}
+    assert set(found) == {"level", "slopes"}
     labels = {label for label, _, _ in scripts.walker_speed.WATCHED} | {"MuJoCo", scripts.walker_speed.REST}
     for row in found.values():
         assert all(row[label] > 0 for label in labels)

@@ -95,11 +95,14 @@ def test_the_reference_foot_is_flat_in_mid_stance() -> None:
     assert np.degrees(np.abs(foot_pitch)).max() < 4
 
 
-def test_a_heightfield_holds_a_ball_at_its_height() -> None:
-    """The ground under the feet is where the grid says, also off its nodes."""
+def test_scenery_is_drawn_at_its_height_and_touches_nothing() -> None:
+    """The ground that is seen is where the grid says, also off its nodes."""
     x = np.arange(0, 20.01, 0.5)
     heights = np.tile(0.05 * x, (41, 1)).astype(np.float32)
-    model = build_body(Build(), timestep=STEP, ground=Ground(-5.0, -10.0, 0.5, heights))
+    model = build_body(Build(), timestep=STEP, sloping=True, scenery=Ground(-5.0, -10.0, 0.5, heights))
+    scenery = model.geom("scenery")
+    assert not scenery.contype.any()
+    assert not scenery.conaffinity.any()
     data = mujoco.MjData(model)
     geom = np.zeros(1, dtype=np.int32)
     for at in (-3.2, 0.0, 4.71):

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
-from footfall.models.body import Ground, build_body
+from footfall.models.body import SENSOR_FOOT_POSITION, SENSOR_TOUCH, Ground, build_body
 from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import Build, Habits
 from footfall.simulate import (
@@ -22,7 +23,7 @@ from footfall.simulate import (
 from footfall.simulate._gait_kernels import REFERENCE
 from footfall.simulate._steer_kernels import pursue
 from footfall.simulate.feedback import GAIN_SCALE, GAIN_START, gain_records
-from footfall.simulate.ground import ground_lookup
+from footfall.simulate.ground import N_PLANES, ground_lookup, tread
 from footfall.simulate.observation import MIRROR, N_OBSERVATION, SIGN, observe
 from footfall.simulate.state import WALKER, Columns
 from footfall.simulate.walkers import N_ACTION, Walkers
@@ -245,6 +246,35 @@ def test_the_ground_is_bilinear(seed: int) -> None:
     np.testing.assert_allclose(gradient, np.column_stack([b + d * y, c + d * x]), atol=1e-12)
     lost, _ = look(np.array([-1e9, np.nan, 1e300]), np.array([0.0, np.inf, 1e300]))
     assert np.isfinite(lost).all()
+
+
+@settings(max_examples=30, deadline=None)
+@given(SEEDS)
+def test_a_foot_in_the_air_gets_the_tangent_plane_and_a_loaded_one_keeps_its_own(seed: int) -> None:
+    """On z = a x + b y + c x y: the plane touches the ground below the foot, its normal is the ground's."""
+    rng, n = np.random.default_rng(seed), 5
+    a, b, c = rng.normal(0, 0.3, 3)
+
+    def look(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return a * x + b * y + c * x * y, np.column_stack([a + c * y, b + c * x])
+
+    sensor, before = rng.normal(size=(n, 30)), rng.normal(size=(n, N_PLANES))
+    load = np.where(rng.random((n, 6)) < 0.2, rng.uniform(1, 900, (n, 6)), 0.0)
+    sensor[:, SENSOR_TOUCH] = load
+    planes = before.copy()
+    tread(planes, sensor, look)
+    for foot in range(2):
+        place, turn = slice(3 * foot, 3 * foot + 3), slice(6 + 4 * foot, 10 + 4 * foot)
+        for i in range(n):
+            if load[i, place].any():
+                np.testing.assert_array_equal(planes[i, place], before[i, place])
+                np.testing.assert_array_equal(planes[i, turn], before[i, turn])
+                continue
+            x, y = sensor[i, SENSOR_FOOT_POSITION][place][:2]
+            np.testing.assert_allclose(planes[i, place], [x, y, a * x + b * y + c * x * y], atol=1e-12)
+            normal = Rotation.from_quat(planes[i, turn], scalar_first=True).apply([0, 0, 1])
+            expected = np.array([-a - c * y, -b - c * x, 1])
+            np.testing.assert_allclose(normal, expected / np.linalg.norm(expected), atol=1e-12)
 
 
 @settings(max_examples=50, deadline=None)

@@ -84,12 +84,12 @@ def test_open_paths_have_ground_beyond_their_ends():
 
 
 def ray_heights(terrain, x, y):
-    """The ground's height as MuJoCo has it, by rays from above."""
-    model = build_body(Build(), timestep=1e-3, ground=terrain)
+    """The ground's height as MuJoCo draws it, by rays from above."""
+    model = build_body(Build(), timestep=1e-3, scenery=terrain)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     above = 100.0
-    ground = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, "ground")
+    ground = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, "scenery")
     down = np.array([0.0, 0.0, -1.0])
     return np.array(
         [

@@ -1,7 +1,10 @@
 """The walker: mirror symmetry, no external force, falls and steering."""
 
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
+from unittest import mock
 
 import mujoco
 import numpy as np
@@ -22,10 +25,12 @@ from footfall.models.body import (
 from footfall.models.policy import load_policy, stock_policy
 from footfall.models.subject import Build, Habits
 from footfall.simulate._balance_kernels import Balance, balance_of, feedback
+from footfall.simulate._gait_kernels import targets_all
 from footfall.simulate._look_kernels import land_all, look_all
 from footfall.simulate._variability_kernels import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD
 from footfall.simulate.env import balance_gains
 from footfall.simulate.feedback import GAIN_SHAPE, GAIN_START, SERVO_MIRROR, SERVO_SIGN, Gains, gain_records
+from footfall.simulate.ground import Look
 from footfall.simulate.observation import MIRROR, N_OBSERVATION, SIGN
 from footfall.simulate.state import WALKER, Columns
 from footfall.simulate.variability import Variability
@@ -210,6 +215,50 @@ def test_standing_stands(grade: float) -> None:
     assert np.degrees(np.abs(trace.sensor[:, :, SENSOR_FOOT_RATE])).max() < 1.0
 
 
+def slope(grade: tuple[float, float]) -> Look:
+    return lambda x, y: (grade[0] * x + grade[1] * y, np.tile(grade, (len(x), 1)))
+
+
+@pytest.mark.parametrize("grade", [(0.08, 0.0), (0.0, 0.08), (0.05, -0.06)])
+def test_a_slope_walks_the_same_as_level_ground_under_tilted_gravity(grade: tuple[float, float]) -> None:
+    """Two seconds of physics under one and the same servo targets: in either frame a body is one."""
+    up = np.array([*grade, 1.0]) / np.linalg.norm([*grade, 1.0])
+    turn, policy = Rotation.align_vectors([[0, 0, 1]], [up])[0], stock_policy()
+    tilted = walkers()
+    tilted.up[:] = up
+    tilted.models[0].opt.gravity[:] = -GRAVITY * up
+    place(tilted)
+    model = build_body(Build(), timestep=0.001, sloping=True)
+    sloping = Walkers([model], policy.feedback_gains, rng=np.random.default_rng(0), ground=slope(grade))
+    for _ in range(66):
+        sloping._state[:] = tilted._state
+        sloping.up[:] = [0, 0, 1]
+        sloping.qpos[0, :3], sloping.qvel[0, :3] = turn.apply([tilted.qpos[0, :3], tilted.qvel[0, :3]])
+        attitude = turn * Rotation.from_quat(tilted.qpos[0, 3:7], scalar_first=True)
+        sloping.qpos[0, 3:7] = attitude.as_quat(scalar_first=True)
+        feet = turn.apply(tilted.sensor[0, SENSOR_FOOT_POSITION].reshape(2, 3))
+        sloping.sensor[0, SENSOR_FOOT_POSITION] = feet.ravel()
+        sloping._find_ground(sloping.qpos, sloping.sensor)
+        look_all(sloping._state)
+        action = policy(tilted.observe())
+        target = tilted.step(action).target
+        with mock.patch("footfall.simulate.walkers.targets_all", partial(_follow, target)):
+            trace = sloping.step(action)
+        back = turn.inv().apply(trace.qpos[0, -1, :3])
+        np.testing.assert_allclose(back, tilted.qpos[0, :3], atol=1e-5)
+        np.testing.assert_allclose(trace.qpos[0, -1, 7:], tilted.qpos[0, 7:], atol=1e-4)
+        loads = trace.sensor[0, -1, SENSOR_TOUCH]
+        np.testing.assert_allclose(loads, tilted.sensor[0, SENSOR_TOUCH], atol=5.0)
+
+
+def _follow(
+    target: np.ndarray, state: np.ndarray, reference: Any, start: np.ndarray, out: np.ndarray
+) -> None:
+    """In the place of the walker's own servo targets."""
+    targets_all(state, reference, start, out)
+    out[:] = target
+
+
 @pytest.mark.parametrize("grade", [(0.08, 0.0), (0.0, 0.08), (0.05, -0.06)])
 def test_a_slope_looks_the_same_as_level_ground_under_tilted_gravity(grade: tuple[float, float]) -> None:
     """Training tilts gravity, walks tilt the ground: in either frame a body is one to the laws."""
@@ -219,7 +268,7 @@ def test_a_slope_looks_the_same_as_level_ground_under_tilted_gravity(grade: tupl
     tilted.models[0].opt.gravity[:] = -GRAVITY * up
     place(tilted)
     sloping = walkers()
-    sloping.ground = lambda x, y: (grade[0] * x + grade[1] * y, np.tile(grade, (len(x), 1)))
+    sloping.ground = slope(grade)
     turn = Rotation.align_vectors([[0, 0, 1]], [up])[0]
     for _ in range(40):
         action = policy(tilted.observe())
@@ -232,7 +281,7 @@ def test_a_slope_looks_the_same_as_level_ground_under_tilted_gravity(grade: tupl
         sloping.qpos[0, 3:7] = attitude.as_quat(scalar_first=True)
         feet = turn.apply(tilted.sensor[0, SENSOR_FOOT_POSITION].reshape(2, 3))
         sloping.sensor[0, SENSOR_FOOT_POSITION] = feet.ravel()
-        sloping._find_ground(sloping.qpos[:, 0], sloping.qpos[:, 1])
+        sloping._find_ground(sloping.qpos, sloping.sensor)
         look_all(sloping._state)
         np.testing.assert_allclose(sloping.observe(), tilted.observe(), atol=0.03)
         one, other = (balance_of(Columns(group._state)) for group in (sloping, tilted))
