@@ -64,8 +64,9 @@ class Stage:
             self.model = copy.copy(walkers.models[0])
         else:
             patch = _patch(self._ground, walkers.qpos[0])
-            step = walkers.models[0].opt.timestep
-            self.model = build_body(plan.subject.build, timestep=step, mount=plan.mount, scenery=patch)
+            step, build = walkers.models[0].opt.timestep, plan.subject.build
+            # Sloping, or a level plane would be seen too; the planes under the feet are not drawn.
+            self.model = build_body(build, timestep=step, mount=plan.mount, sloping=True, scenery=patch)
             self._move_ground()
         model = self.model
         # Clipping and shadows to the walker's scale, not to that of a landscape of a kilometre.

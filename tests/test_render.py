@@ -14,8 +14,9 @@ from commands import expect_one_sentence
 from PIL import Image
 
 from footfall.errors import InputError
+from footfall.models.body import Ground
 from footfall.models.policy import stock_policy
-from footfall.simulate.draw import Stage, has_screen
+from footfall.simulate.draw import SIDE_VIEW, Stage, has_screen
 from footfall.simulate.journey import Outing, Plan
 from footfall.simulate.walkers import N_ACTION
 
@@ -135,6 +136,26 @@ def test_feet_that_stand_leave_prints_under_them_on_the_path(short_plan: Plan) -
     stage.restart()
     assert len(ground_marks(stage)["print"]) in (0, 4)
     outing.walkers.close()
+
+
+def test_on_slopes_their_ground_alone_is_seen(short_plan: Plan) -> None:
+    """Not a level plane as well, nor the planes that the feet tread on."""
+    heights = np.tile(-0.05 * np.arange(-12.0, 40.0), (60, 1)).astype(np.float32)
+    downhill = replace(short_plan, ground=Ground(-12.0, -12.0, 1.0, heights))
+    for plan, expected in (
+        (short_plan, mujoco.mjtGeom.mjGEOM_PLANE),
+        (downhill, mujoco.mjtGeom.mjGEOM_HFIELD),
+    ):
+        outing = Outing(plan, stock_policy().feedback_gains, stand=1.0)
+        stage = Stage(outing.walkers, outing)
+        scene = mujoco.MjvScene(stage.model, 1000)
+        everything, option = mujoco.mjtCatBit.mjCAT_ALL.value, mujoco.MjvOption()
+        camera = stage.camera(SIDE_VIEW)
+        mujoco.mjv_updateScene(stage.model, stage.data, option, None, camera, everything, scene)
+        seen = {geom.type for geom in scene.geoms[: scene.ngeom]}
+        grounds = {mujoco.mjtGeom.mjGEOM_PLANE.value, mujoco.mjtGeom.mjGEOM_HFIELD.value}
+        assert seen & grounds == {expected.value}
+        outing.walkers.close()
 
 
 # Viewers
