@@ -219,27 +219,37 @@ def slope(grade: tuple[float, float]) -> Look:
     return lambda x, y: (grade[0] * x + grade[1] * y, np.tile(grade, (len(x), 1)))
 
 
-@pytest.mark.parametrize("grade", [(0.08, 0.0), (0.0, 0.08), (0.05, -0.06)])
-def test_a_slope_walks_the_same_as_level_ground_under_tilted_gravity(grade: tuple[float, float]) -> None:
-    """Two seconds of physics under one and the same servo targets: in either frame a body is one."""
+def under_tilted_gravity(grade: tuple[float, float]) -> tuple[Walkers, Rotation]:
+    """A walker on level ground whose gravity makes it that slope; the turn from its frame to the slope's."""
     up = np.array([*grade, 1.0]) / np.linalg.norm([*grade, 1.0])
-    turn, policy = Rotation.align_vectors([[0, 0, 1]], [up])[0], stock_policy()
     tilted = walkers()
     tilted.up[:] = up
     tilted.models[0].opt.gravity[:] = -GRAVITY * up
     place(tilted)
+    return tilted, Rotation.align_vectors([[0, 0, 1]], [up])[0]
+
+
+def put_on_slope(sloping: Walkers, tilted: Walkers, turn: Rotation) -> None:
+    """The same body in the same state, seen from the slope's frame."""
+    sloping._state[:] = tilted._state
+    sloping.up[:] = [0, 0, 1]
+    sloping.qpos[0, :3], sloping.qvel[0, :3] = turn.apply([tilted.qpos[0, :3], tilted.qvel[0, :3]])
+    attitude = turn * Rotation.from_quat(tilted.qpos[0, 3:7], scalar_first=True)
+    sloping.qpos[0, 3:7] = attitude.as_quat(scalar_first=True)
+    feet = turn.apply(tilted.sensor[0, SENSOR_FOOT_POSITION].reshape(2, 3))
+    sloping.sensor[0, SENSOR_FOOT_POSITION] = feet.ravel()
+    sloping._find_ground(sloping.qpos, sloping.sensor)
+    look_all(sloping._state)
+
+
+@pytest.mark.parametrize("grade", [(0.08, 0.0), (0.0, 0.08), (0.05, -0.06)])
+def test_a_slope_walks_the_same_as_level_ground_under_tilted_gravity(grade: tuple[float, float]) -> None:
+    """Two seconds of physics under one and the same servo targets: in either frame a body is one."""
+    (tilted, turn), policy = under_tilted_gravity(grade), stock_policy()
     model = build_body(Build(), timestep=0.001, sloping=True)
     sloping = Walkers([model], policy.feedback_gains, rng=np.random.default_rng(0), ground=slope(grade))
     for _ in range(66):
-        sloping._state[:] = tilted._state
-        sloping.up[:] = [0, 0, 1]
-        sloping.qpos[0, :3], sloping.qvel[0, :3] = turn.apply([tilted.qpos[0, :3], tilted.qvel[0, :3]])
-        attitude = turn * Rotation.from_quat(tilted.qpos[0, 3:7], scalar_first=True)
-        sloping.qpos[0, 3:7] = attitude.as_quat(scalar_first=True)
-        feet = turn.apply(tilted.sensor[0, SENSOR_FOOT_POSITION].reshape(2, 3))
-        sloping.sensor[0, SENSOR_FOOT_POSITION] = feet.ravel()
-        sloping._find_ground(sloping.qpos, sloping.sensor)
-        look_all(sloping._state)
+        put_on_slope(sloping, tilted, turn)
         action = policy(tilted.observe())
         target = tilted.step(action).target
         with mock.patch("footfall.simulate.walkers.targets_all", partial(_follow, target)):
@@ -262,27 +272,13 @@ def _follow(
 @pytest.mark.parametrize("grade", [(0.08, 0.0), (0.0, 0.08), (0.05, -0.06)])
 def test_a_slope_looks_the_same_as_level_ground_under_tilted_gravity(grade: tuple[float, float]) -> None:
     """Training tilts gravity, walks tilt the ground: in either frame a body is one to the laws."""
-    up = np.array([*grade, 1.0]) / np.linalg.norm([*grade, 1.0])
-    tilted, policy = walkers(), stock_policy()
-    tilted.up[:] = up
-    tilted.models[0].opt.gravity[:] = -GRAVITY * up
-    place(tilted)
+    (tilted, turn), policy = under_tilted_gravity(grade), stock_policy()
     sloping = walkers()
     sloping.ground = slope(grade)
-    turn = Rotation.align_vectors([[0, 0, 1]], [up])[0]
     for _ in range(40):
         action = policy(tilted.observe())
         tilted.step(action)
-        sloping._state[:] = tilted._state
-        sloping.up[:] = [0, 0, 1]
-        for moved in ("qpos", "qvel"):
-            getattr(sloping, moved)[0, :3] = turn.apply(getattr(tilted, moved)[0, :3])
-        attitude = turn * Rotation.from_quat(tilted.qpos[0, 3:7], scalar_first=True)
-        sloping.qpos[0, 3:7] = attitude.as_quat(scalar_first=True)
-        feet = turn.apply(tilted.sensor[0, SENSOR_FOOT_POSITION].reshape(2, 3))
-        sloping.sensor[0, SENSOR_FOOT_POSITION] = feet.ravel()
-        sloping._find_ground(sloping.qpos, sloping.sensor)
-        look_all(sloping._state)
+        put_on_slope(sloping, tilted, turn)
         np.testing.assert_allclose(sloping.observe(), tilted.observe(), atol=0.03)
         one, other = (balance_of(Columns(group._state)) for group in (sloping, tilted))
         np.testing.assert_allclose(np.stack(one), np.stack(other), atol=0.012)
