@@ -4,10 +4,10 @@ Walks the first metres of a scenario, on level ground and on its slopes, and giv
 simulated minutes (scaled; building the body, which happens once, is added unscaled). The whole and MuJoCo's
 share of it come from a walk in which nothing but MuJoCo is timed, where the rest goes from another one. Then
 MuJoCo alone repeats the same physics: every control step from its recorded state under its recorded servo
-targets (and planes under the feet), in a few large rollouts, which must end in the same states to the last bit. "whole / bare" is
-therefore what everything around the physics costs. Last, several walks at once: simulated seconds per second
-of the clock, each walk's own, added up. Trust ratios more than seconds, and on a busy machine, whose other
-work empties the caches, the median control step more than the sum.
+targets (on slopes also over its planes), in a few large rollouts, which must end in the same states to the
+last bit. "whole / bare" is therefore what everything around the physics costs. Last, several walks at once:
+simulated seconds per second of the clock, each walk's own, added up. Trust ratios more than seconds, and on a
+busy machine, whose other work empties the caches, the median control step more than the sum.
 
 python benchmarks/walker_speed.py
 """
