@@ -104,7 +104,7 @@ def run_filter(
     Parameters
     ----------
     pdr : still start, stances and detector; `tilt_gain` means nothing here
-    start : position and heading of footfall 0
+    start : where the IMU rests before the walk, `found.rest.last`; what it does from there on is filtered
     corrector : a heading method, asked at every footfall after footfall 0
     found : what `detect` found, where it is known already
     smooth : run back over the record too (Rauch, Tung, Striebel); needs one update a stance
@@ -126,7 +126,7 @@ def run_filter(
 
     now = InertialFilter(settings, align(recording, found.rest, start))
     kept: list[InertialFilter] = []
-    nodes: list[Node] = []
+    nodes = [Node.first(now)] if smooth else []  # one a reset; the first is the rest
     heading, innovation = start.heading, np.full(len(stances.footfalls), np.nan)
     for i, footfall in enumerate(stances.footfalls):
         for reset in range(stances.footfalls[i - 1] + 1 if i else 1, footfall + 1):
@@ -135,9 +135,6 @@ def run_filter(
                 nodes.append(_node(now, recording, rows, update))
             else:
                 now.advance(recording.t[rows], recording.gyro[rows], recording.accel[rows], update[rows])
-        if i == 0:
-            now.pin(start.position, start.heading)
-            nodes = [Node.first(now)] if smooth else []
         heading += float(wrap(now.heading - heading))
         if i > 0 and corrector is not None:
             said = corrector(Step(i, now.t, heading, now.t - kept[-1].t, float(still_time[i]), now.position))
@@ -150,7 +147,7 @@ def run_filter(
         kept.append(now.snapshot())
     if smooth:
         states = smoothed(nodes)
-        kept = [states[k] for k in stances.footfalls - stances.footfalls[0]]
+        kept = [states[k] for k in stances.footfalls]
     return _filtered(kept, start, innovation)
 
 

@@ -230,23 +230,6 @@ class InertialFilter:
             )
         return np.asarray(kernels.heading(self._x, self._p, float(innovation), float(sd) ** 2))
 
-    def pin(self, position: tuple[float, float, float], heading: float) -> None:
-        """Say where the foot is and how it is headed: the world is moved and turned about the vertical."""
-        turn = heading - float(heading_of(self.quaternion))
-        c, s = math.cos(turn), math.sin(turn)
-        about = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        self._x[0:4] = about_vertical(self._x[0:4], turn)
-        self._x[4:7] = about @ self._x[4:7]
-        self._x[7:10] = position
-        whole = np.eye(len(self._p))
-        for block in (POSITION, VELOCITY, ATTITUDE):
-            whole[block, block] = about
-        self._p[:] = whole @ self._p @ whole.T
-        known = [0, 1, 2, HEADING]
-        self._p[known, :] = 0.0
-        self._p[:, known] = 0.0
-        self._p[HEADING, HEADING] = self.settings.heading_sd**2
-
     def snapshot(self) -> InertialFilter:
         """A copy that goes its own way."""
         copy = object.__new__(InertialFilter)

@@ -29,7 +29,13 @@ MIN_LEVEL = math.sin(math.radians(10.0))
 
 @dataclass(frozen=True)
 class StartPose:
-    """Where the walk starts: position (m) and heading of the IMU's x axis (rad) at the first footfall."""
+    """Where the walk starts: the IMU at rest, at the last sample averaged for the static bias (`Rest.last`).
+
+    Attributes
+    ----------
+    position : m
+    heading : rad, of the IMU's x axis
+    """
 
     position: tuple[float, float, float] = ORIGIN
     heading: float = 0.0
@@ -164,13 +170,13 @@ def dead_reckon(
     Parameters
     ----------
     recording : at least `params.bias_s` seconds at rest, then a walk
-    start : position and heading of row 0
+    start : where the IMU rests before the walk; what it does from there on is navigated
     found : what `detect` found, where it is known already
 
     Returns
     -------
     Footfalls
-        Row 0 is the end of the still start, then one row a stance.
+        Row 0 is footfall 0, the last reset of the still start, then one row a stance.
 
     Raises
     ------
@@ -210,11 +216,14 @@ def dead_reckon(
 
 
 def placed(t: np.ndarray, quaternion: np.ndarray, position: np.ndarray, start: StartPose) -> Footfalls:
-    """Footfalls at stamps (n,), attitudes (n, 4), positions (n, 3), moved to where the walk starts."""
-    heading = heading_of(quaternion)
-    turn = Rotation.from_rotvec([0.0, 0.0, start.heading - heading[0]])
-    position = turn.apply(position - position[0]) + np.asarray(start.position)
-    return Footfalls.at(t, position, heading - heading[0] + start.heading)
+    """Footfalls from what was reckoned from the rest at heading 0 and the origin: put where the rest was.
+
+    Stamps (n,), attitudes (n, 4) and positions (n, 3). Between the rest and row 0 the foot may turn on the
+    ground, more slowly than any detector tells from rest: row 0 is where that leaves it.
+    """
+    turn = Rotation.from_rotvec([0.0, 0.0, start.heading])
+    position = turn.apply(position) + np.asarray(start.position)
+    return Footfalls.at(t, position, heading_of(quaternion) + start.heading)
 
 
 def detect(recording: Recording, params: PdrParams) -> Detected:

@@ -18,6 +18,7 @@ from footfall.recording import Recording
 
 STANCE = 0.3  # share of the stride that the ball of the foot is at rest
 LEVER = np.array([-0.06, 0.0, 0.07])  # m, from the ball of the foot to the IMU, in the foot's frame
+PIVOT_S = 0.6  # s, of a foot that turns on the ground before its first stride
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -82,6 +83,7 @@ def walk(
     jitter: float = 0.0,
     rocking: float = np.radians(6.0),
     mount_pitch: float = np.radians(20.0),
+    pivot: float = 0.0,
 ) -> SyntheticWalk:
     """Walk with the foot at `headings` (rad) at its footfalls, the first of which is the still start.
 
@@ -91,6 +93,8 @@ def walk(
     jitter : share of the sampling interval by which stamps scatter evenly
     rocking : rad/s, pitch rate of the foot at mid-stance
     mount_pitch : rad, the IMU's x axis points down by this when the foot is flat
+    pivot : rad, the foot stands turned back by this and turns about its ball into headings[0], on the ground,
+        in the last 0.6 s of the still start: peak rate 1.875 pivot / 0.6 s
     """
     psi = np.asarray(headings, dtype=float)
     last = len(psi) - 1
@@ -116,6 +120,8 @@ def walk(
         early, late = 8**8 / (3**3 * 5**5) * s**3 * (1 - s) ** 5, 8**8 / (3**3 * 5**5) * s**5 * (1 - s) ** 3
         rock = rocking * period / (2 * np.pi) * np.sin(2 * np.pi * u)
         yaw = psi[k] + (psi[k + 1] - psi[k]) * go + np.radians(10) * early
+        u_pivot = np.clip((at - still_s + PIVOT_S) / PIVOT_S, 0.0, 1.0)
+        yaw = yaw - pivot * (1 - u_pivot**3 * (10 - 15 * u_pivot + 6 * u_pivot**2))
         pitch = rock + np.radians(85) * early - np.radians(25) * late
         roll = np.radians(-8) * early + np.radians(12) * late
         foot = Rotation.from_euler("ZYX", np.column_stack([yaw, pitch, roll]))
