@@ -14,7 +14,7 @@ import typer
 from rich.progress import Progress
 
 from footfall import __version__
-from footfall.cli_recordings import allan, record, score, track
+from footfall.cli_recordings import allan, export, record, score, track
 from footfall.errors import InputError
 from footfall.options import JsonOption, NoCacheOption, ScenarioArgument
 from footfall.terminal import ERR, OUT, finite, perform, print_json, require_output, say
@@ -250,7 +250,7 @@ def render(
     say(f"{pictures} pictures: {output}")
 
 
-for command in (record, track, score, allan):
+for command in (record, track, score, export, allan):
     app.command()(command)
 
 

@@ -1,4 +1,4 @@
-"""Commands on recordings and tracks: record, track, score, allan. They are registered in cli.py."""
+"""Commands on recordings and tracks: record, track, score, export, allan. They are registered in cli.py."""
 
 from __future__ import annotations
 
@@ -105,8 +105,14 @@ def track(
         ),
     ] = None,
     heading: Annotated[
-        float, typer.Option(help="Heading at the start, deg, counter-clockwise from x.", callback=finite)
-    ] = 0.0,
+        float | None,
+        typer.Option(
+            help="Heading of the IMU at rest before the walk, deg, counter-clockwise from x; if left out, "
+            "what a simulated recording says of it, else 0.",
+            callback=finite,
+            show_default=False,
+        ),
+    ] = None,
     directions: Annotated[
         int | None,
         typer.Option(
@@ -133,7 +139,7 @@ def track(
     The recording is judged by physics first; lost, doubled and clipped samples are told and handled.
     """
     from footfall.formats import parse_units
-    from footfall.pdr.pdr import PdrParams, StartPose
+    from footfall.pdr.pdr import PdrParams
     from footfall.pdr.track import write_track
     from footfall.tracking import track_file
 
@@ -150,7 +156,7 @@ def track(
             rate_hz=rate,
             detector=detector,
             bias_s=bias_time,
-            start=StartPose(heading=math.radians(heading)),
+            heading=None if heading is None else math.radians(heading),
             directions=directions,
             reference=None if reference is None else math.radians(reference),
         )
@@ -170,21 +176,53 @@ def score(
         ),
     ],
     walk: Annotated[Path, typer.Argument(help="The walk that was recorded.")],
+    align: Annotated[
+        str,
+        typer.Option(
+            help="What is fitted first, by a shift on the plane and a turn: none, nothing; start, the first "
+            "row; yaw, the first row's position and the best turn; rigid, the best shift and turn. For "
+            "tracks of an unknown start."
+        ),
+    ] = "none",
     as_json: JsonOption = False,
 ) -> None:
-    """Score a track against the true walk: heading and position errors."""
+    """Score a track against the true walk: heading and position errors.
+
+    Nothing is fitted, unless --align asks for it.
+    """
     from footfall.pdr.track import read_track
     from footfall.scenarios.report import score_table
+    from footfall.scenarios.score import require_align
     from footfall.scenarios.score import score as judge
     from footfall.simulate.walk import read_walk
 
+    fitted = require_align(align)
     estimate, truth = read_track(track), read_walk(walk)
     with blaming(track, "track"):
-        result = judge(estimate, truth)
+        result = judge(estimate, truth, fitted)
     if as_json:
-        print_json(result.as_dict())
+        print_json({"align": fitted, **result.as_dict()})
     else:
-        OUT.print(score_table(result))
+        OUT.print(score_table(result, fitted))
+
+
+def export(
+    file: Annotated[Path, typer.Argument(help="A track or a walk.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="File to write.")],
+    format: Annotated[
+        str, typer.Option(help="tum: a line `t x y z qx qy qz qw` a pose (s, m), as evo and others read it.")
+    ] = "tum",
+) -> None:
+    """Write a track, or a walk's truth, in the format of other tools.
+
+    A track has headings alone: its poses are level. Compare positions, not rotations, with those of a walk.
+    """
+    from footfall.export import export_tum
+
+    if format != "tum":
+        raise InputError(f"--format {format!r} is unknown, expected tum")
+    require_output(output, (".tum", ".txt"), file)
+    say(f"{export_tum(file, output)} poses: {output}")
 
 
 def allan(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,6 +20,9 @@ UNITS = {
     **dict.fromkeys(ACCEL, "m/s2"),
     "temperature": "degC",
 }
+
+
+_TRUTH = {"px", "py", "pz", "qw", "qx", "qy", "qz"}
 
 
 @dataclass(frozen=True)
@@ -78,15 +81,30 @@ def write_recording(recording: Recording, path: str | os.PathLike[str]) -> None:
     write_table(path, columns, UNITS, recording.meta)
 
 
+def is_truth(names: Iterable[str]) -> bool:
+    """Whether columns of these names hold the poses of a walk."""
+    return set(names) >= _TRUTH
+
+
+def refuse_truth(path: str | os.PathLike[str], names: Iterable[str]) -> None:
+    """Raise InputError where columns of these names are a walk's truth, which no IMU ever recorded."""
+    if is_truth(names):
+        raise InputError(
+            f"{path}: is the truth of a walk, expected what an IMU recorded of it: first "
+            f"`footfall record {path} --imu perfect -o FILE` (or another IMU)"
+        )
+
+
 def read_recording(path: str | os.PathLike[str]) -> Recording:
     """Read a recording from Parquet or CSV.
 
     Raises
     ------
     InputError
-        Missing columns, NaN, or stamps that do not increase.
+        Missing columns, NaN, stamps that do not increase, or the truth of a walk.
     """
     columns, meta = read_table(path)
+    refuse_truth(path, columns)
     require_columns(str(path), columns, ("t", *GYRO, *ACCEL))
     temperature = columns.get("temperature")
     try:

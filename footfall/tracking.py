@@ -12,7 +12,7 @@ from footfall.formats.condition import Findings
 from footfall.formats.reader import WHOLE_ROWS, Blocks, open_source, read
 from footfall.hdr.methods import METHODS, require_methods, told_directions
 from footfall.hdr.streamed import StreamedReckoning
-from footfall.hdr.tracks import Reckoning
+from footfall.hdr.tracks import Reckoning, told
 from footfall.pdr.detectors import require_detector
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.pdr import PdrParams, StartPose
@@ -39,6 +39,7 @@ def track_file(
     detector: str = "threshold",
     bias_s: float | None = None,
     start: StartPose | None = None,
+    heading: float | None = None,
     directions: int | None = None,
     reference: float | None = None,
 ) -> Tracked:
@@ -49,7 +50,8 @@ def track_file(
     method, detector : names in `METHODS` and `DETECTORS`
     format, sizes, rate_hz : as of `footfall.formats.read`
     bias_s : s, T_bias; None for as long as the recording rests, at most 25
-    start : where the walk starts
+    start : where the IMU rests before the walk; None for what the recording says (`StartPose.of`)
+    heading : rad, at the start, in place of the start's own
     directions, reference : dominant directions, for methods that go by them: how many (None for 4), and one
         of them (rad; None for the heading at the start)
 
@@ -63,9 +65,10 @@ def track_file(
     params = PdrParams(detector=require_detector(detector))
     params = params if bias_s is None else replace(params, bias_s=bias_s)
     rest = still_time if bias_s is None else None
-    start = start or StartPose()
-    told = told_directions(method, directions, reference, start)
     source = open_source(path, format, sizes, rate_hz)
+    start = start or StartPose.of(source.meta)
+    start = start if heading is None else replace(start, heading=heading)
+    counted = told_directions(method, directions, reference, start)
     used = params.bias_s
 
     def run_through() -> Footfalls:
@@ -79,13 +82,13 @@ def track_file(
             if rest is not None:
                 used = rest(recording, used)
             params = replace(params, bias_s=used)
-            track = METHODS[method].run(Reckoning(recording, start, params, told))
+            track = METHODS[method].run(Reckoning(recording, start, params, counted))
         else:
             blocks = Blocks(path, source)
-            track = METHODS[method].run(StreamedReckoning(run_through, start, told))
+            track = METHODS[method].run(StreamedReckoning(run_through, start, counted))
             findings = blocks.findings
     except InputError as error:
         sentence = str(error).removeprefix("recording: ").removeprefix(f"{path}: ")
         raise InputError(f"{path}: {sentence}") from None
-    meta = {**track.meta, "read": findings.as_dict(), "detector": detector, "bias_s": used}
-    return Tracked(replace(track, meta=meta), findings, used)
+    origin = {**source.meta, "read": findings.as_dict()}
+    return Tracked(told(track, origin, replace(params, bias_s=used), start), findings, used)

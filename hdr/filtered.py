@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
 
 import numpy as np
 
 from footfall import __version__
+from footfall.identity import plain
 from footfall.pdr.filtering import Filtered
 from footfall.pdr.ins import FilterSettings
 from footfall.pdr.track import Track
@@ -47,5 +47,5 @@ def filter_track(
         heading=filtered.footfalls.heading,
         evidence=dict(zip(FILTER_UNITS, columns, strict=True)) | dict(evidence or {}),
         units=dict(FILTER_UNITS) | dict(units or {}),
-        meta={"method": name, "version": __version__, "filter": asdict(settings)},
+        meta={"method": name, "version": __version__, "filter": plain(settings)},
     )

@@ -13,7 +13,15 @@ from footfall.hdr.hde import Hde, Hde2010Params, HdeParams
 from footfall.hdr.hdr import HdrParams
 from footfall.hdr.ihde import Ihde, IhdeParams
 from footfall.hdr.jimenez import FilterHdr, Jimenez, JimenezParams
-from footfall.hdr.tracks import Reckoning, corrected_track, hde_2010_track, hdr_track, iez_track, pdr_track
+from footfall.hdr.tracks import (
+    Reckoning,
+    corrected_track,
+    hde_2010_track,
+    hdr_track,
+    iez_track,
+    pdr_track,
+    told,
+)
 from footfall.pdr.ins import FilterSettings
 from footfall.pdr.pdr import PdrParams, StartPose
 from footfall.pdr.track import Track
@@ -176,7 +184,8 @@ def tracks(reckoning: Reckoning, methods: Iterable[str]) -> dict[str, Track]:
     """
     names = list(methods)
     require_methods(names)
-    return {name: METHODS[name].run(reckoning) for name in names}
+    origin, pdr, start = reckoning.recording.meta, reckoning.pdr, reckoning.start
+    return {name: told(METHODS[name].run(reckoning), origin, pdr, start) for name in names}
 
 
 def track(

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Protocol
 
@@ -17,6 +16,7 @@ from footfall.hdr.directions import DirectionParams
 from footfall.hdr.filtered import filter_track
 from footfall.hdr.hde import HDE_2010_UNITS, Hde2010Params, hde_2010
 from footfall.hdr.hdr import HdrParams, trace
+from footfall.identity import plain
 from footfall.pdr.filtering import Corrector, Filtered, Step, run_filter
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.ins import FilterSettings
@@ -63,6 +63,21 @@ class Reckoning:
         return run_filter(self.recording, settings, self.pdr, self.start, corrector, found=self.detected)
 
 
+def told(track: Track, origin: Mapping[str, Any], pdr: PdrParams, start: StartPose) -> Track:
+    """`track`, which tells what it was made of and how.
+
+    Parameters
+    ----------
+    origin : the recording's own metadata: which walk, unit, noise
+    pdr, start : as of `Reckoning`
+    """
+    settings, detector = plain(pdr), {"kind": type(pdr.detector).__name__}
+    if isinstance(settings["detector"], dict):
+        detector |= settings["detector"]
+    made = {"pdr": settings | {"detector": detector}, "start": start.as_dict()}
+    return replace(track, meta={**origin, **track.meta, **made})
+
+
 def pdr_track(footfalls: Footfalls) -> Track:
     """Dead reckoning as it is: position and heading without any heading correction."""
     return Track(
@@ -101,7 +116,7 @@ def hdr_track(
         meta={
             "method": name,
             "version": __version__,
-            "params": _finite(asdict(params)),
+            "params": plain(params),
             "paper_positions": paper_positions,
         },
     )
@@ -128,7 +143,7 @@ def hde_2010_track(footfalls: Footfalls, params: Hde2010Params | None = None) ->
         heading=found.heading,
         evidence=dict(zip(HDE_2010_UNITS, found[:3], strict=True)),
         units=HDE_2010_UNITS,
-        meta={"method": "hde-2010", "version": __version__, "params": _finite(asdict(params))},
+        meta={"method": "hde-2010", "version": __version__, "params": plain(params)},
     )
 
 
@@ -162,9 +177,4 @@ def corrected_track(
     filtered = reckoning.filtered(settings, corrector)
     evidence = dict(zip(corrector.units, np.array(corrector.rows, dtype=float).T, strict=True))
     track = filter_track(filtered, settings, name=name, evidence=evidence, units=corrector.units)
-    return replace(track, meta={**track.meta, "params": _finite(asdict(corrector.params))})
-
-
-def _finite(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Without what is infinite, which JSON cannot say."""
-    return {key: value for key, value in settings.items() if value != math.inf}
+    return replace(track, meta={**track.meta, "params": plain(corrector.params)})

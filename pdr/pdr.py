@@ -7,7 +7,9 @@ is the gyro's own: nothing here observes it, so nothing may touch it.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -39,6 +41,20 @@ class StartPose:
 
     position: tuple[float, float, float] = ORIGIN
     heading: float = 0.0
+
+    def as_dict(self) -> dict[str, Any]:
+        """For metadata."""
+        return {"position_m": [float(value) for value in self.position], "heading_rad": float(self.heading)}
+
+    @classmethod
+    def of(cls, meta: Mapping[str, Any]) -> StartPose:
+        """What a simulated recording's metadata say of its start; the origin and heading 0 where none do."""
+        try:
+            x, y, z = (float(value) for value in meta["start"]["position_m"])
+            start = cls((x, y, z), float(meta["start"]["heading_rad"]))
+        except (KeyError, TypeError, ValueError):
+            return cls()
+        return start if all(map(math.isfinite, (x, y, z, start.heading))) else cls()
 
 
 @dataclass(frozen=True)

@@ -37,9 +37,7 @@ def evaluation(result: Result, title: str | None = None) -> Figure:
     above, below = grid[:, 0]
     began = track.t[0]
     row = compare(track, result.walk)
-    truth = np.degrees(track.heading - track.heading[0] - row.heading_error) + np.degrees(
-        result.walk.footfalls.heading[0]
-    )
+    truth = np.degrees(track.heading - row.heading_error)
     above.plot(row.t - began, truth, color="#222222", lw=3.0, alpha=0.35, label="truth")
     for name, other in result.tracks.items():
         off = compare(other, result.walk).heading_error

@@ -14,7 +14,7 @@ from rich.text import Text
 from footfall.scenarios.paper import HDR_TABLE_2, HDR_TABLE_2_MEAN, IHDE_TABLE_2, range_text
 from footfall.scenarios.path import Path
 from footfall.scenarios.run import Result
-from footfall.scenarios.score import Score, improvement, mean_score
+from footfall.scenarios.score import Align, Score, improvement, mean_score
 from footfall.simulate.journey import versions
 
 _ERRORS = ("heading_error_final_deg", "heading_error_mean_deg")
@@ -229,12 +229,20 @@ _SCORE_LABELS = {
 }
 
 
-def score_table(score: Score) -> Group:
-    """One row a figure."""
+_ALIGNED = {
+    "none": "as it is, nothing fitted",
+    "start": "its first row laid on the truth",
+    "yaw": "its first row moved to the truth, the turn fitted",
+    "rigid": "shift and turn fitted",
+}
+
+
+def score_table(score: Score, align: Align = "none") -> Group:
+    """One row a figure, and above them what was fitted."""
     table = new_table("", "")
     for key, value in score.as_dict().items():
         table.add_row(_SCORE_LABELS[key], f"{value:.3f}")
-    return titled("Errors, estimate against truth", table)
+    return titled(f"Errors, estimate against truth ({_ALIGNED[align]})", table)
 
 
 def _pair(score: Score) -> str:

@@ -12,9 +12,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
-from footfall.conventions import heading_of
 from footfall.errors import InputError
 from footfall.hdr.methods import Reckoning, require_methods, tracks
 from footfall.models.imu import draw_unit, load_spec
@@ -78,9 +75,7 @@ class Result:
 
 def start_pose(walk: Walk, bias_s: float = BIAS_TIME) -> StartPose:
     """The known start: the IMU's true pose at rest, at the last sample of the first `bias_s` seconds."""
-    row = int(np.searchsorted(walk.t - walk.t[0], bias_s + 1e-6)) - 1
-    x, y, z = (float(value) for value in walk.position[row])
-    return StartPose((x, y, z), float(heading_of(walk.quaternion[row])))
+    return StartPose(*walk.pose_at_rest(bias_s))
 
 
 def perform(task: Task, on_progress: Callable[[float, int], None] | None = None) -> Result:

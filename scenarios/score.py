@@ -1,8 +1,8 @@
 """How far a track is off the truth.
 
-Nothing is fitted. What every method is given is the start pose: the first row of the track is laid on the
-truth at its time, by a shift on the plane and a turn about the vertical, which is the identity for a track
-that began there. Errors are estimate - truth; positions and distances are horizontal.
+Nothing is fitted: the track is compared as it is, in the world's coordinates. A track whose start nobody knew
+can be aligned first, by an option that says how much is fitted. Errors are estimate - truth; positions and
+distances are horizontal.
 """
 
 from __future__ import annotations
@@ -10,16 +10,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from typing import Literal, cast, get_args
 
 import numpy as np
 
 from footfall.conventions import heading_of, wrap
 from footfall.errors import InputError
+from footfall.identity import WalkIdentity
 from footfall.pdr.track import Track
 from footfall.simulate.walk import Walk
 
 TIME_SLACK = 0.1  # s; an IMU's clock may run off by this much over a walk
 UNCOVERED = 5.0  # s; a track that leaves out more of the walk's start or end is not judged
+
+Align = Literal["none", "start", "yaw", "rigid"]
 
 
 @dataclass(frozen=True)
@@ -65,7 +69,7 @@ class Comparison:
     ----------
     t : (n,) s
     estimate, truth : (n, 2) m, on the plane
-    heading_error : (n,) rad, estimate - truth, continuous; 0 in row 0
+    heading_error : (n,) rad, estimate - truth, continuous; from -pi to pi in row 0
     """
 
     t: np.ndarray
@@ -74,19 +78,27 @@ class Comparison:
     heading_error: np.ndarray
 
 
-def compare(track: Track, walk: Walk) -> Comparison:
-    """Lay the start of a track on the truth and read the truth at the track's times.
+def compare(track: Track, walk: Walk, align: Align = "none") -> Comparison:
+    """Put a track beside the truth at its times.
 
     The true heading is read at the track's rows alone: between stances the foot pitches through the vertical,
     where heading means nothing. Whole turns are told by the walk's own footfalls, so that an error of more
     than half a turn is not mistaken for a small one.
 
+    Parameters
+    ----------
+    align : what is fitted first, by a shift on the plane and a turn about the vertical
+        "none": nothing; "start": position and heading of row 0 become the truth's (evo: `align_origin`);
+        "yaw": the position of row 0 becomes the truth's and the turn is that of least squares over all rows;
+        "rigid": shift and turn of least squares over all rows (evo: `align`; Umeyama 1991, without scale)
+
     Raises
     ------
     InputError
-        The track is not finite, is too short, lies outside the walk's time or covers only a part of it.
+        The track is not finite, is too short, lies outside the walk's time or covers only a part of it, or
+        was made of another walk.
     """
-    _require_scorable(track, walk)
+    require_scorable(track, walk)
     t = np.clip(track.t, walk.t[0], walk.t[-1])
     truth = np.column_stack([np.interp(t, walk.t, walk.position[:, axis]) for axis in (0, 1)])
 
@@ -95,23 +107,41 @@ def compare(track: Track, walk: Walk) -> Comparison:
     heading = near + wrap(yaw - near)
     # From row to row the error changes by far less than half a turn, even where footfalls were missed.
     error = np.unwrap(track.heading - heading)
-    turn = error[0]
+    estimate, turn = _aligned(track.position[:, :2], truth, float(error[0]), align)
+    error = error + turn
+    # Whole turns mean nothing at the start.
+    return Comparison(track.t, estimate, truth, error - error[0] + wrap(error[0]))
 
-    offset = track.position[:, :2] - track.position[0, :2]
+
+def _aligned(estimate: np.ndarray, truth: np.ndarray, off: float, align: Align) -> tuple[np.ndarray, float]:
+    """Positions (n, 2) laid on the truth, and by what turn (rad); `off` is the error of row 0's heading."""
+    if align == "none":
+        return estimate, 0.0
+    if align == "rigid":
+        here, there = estimate.mean(axis=0), truth.mean(axis=0)
+    else:
+        here, there = estimate[0], truth[0]
+    a, b = estimate - here, truth - there
+    # Least squares on the plane: the angle of the sum of conj(a) b.
+    across = np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    turn = -off if align == "start" else math.atan2(across, np.sum(a * b))
     c, s = math.cos(turn), math.sin(turn)
-    estimate = truth[0] + offset @ np.array([[c, -s], [s, c]])  # turned by -turn
-    return Comparison(track.t, estimate, truth, error - turn)
+    return there + a @ np.array([[c, s], [-s, c]]), turn
 
 
-def score(track: Track, walk: Walk) -> Score:
+def score(track: Track, walk: Walk, align: Align = "none") -> Score:
     """Judge a track against the walk that it was made from.
+
+    Parameters
+    ----------
+    align : as of `compare`
 
     Raises
     ------
     InputError
         As `compare`; or nothing was walked.
     """
-    row = compare(track, walk)
+    row = compare(track, walk, align)
     error_deg = np.degrees(np.abs(row.heading_error))
     off = np.hypot(*(row.estimate - row.truth).T)
     travelled, estimated = (
@@ -157,7 +187,24 @@ def improvement(before: Score, after: Score) -> Improvement:
     )
 
 
-def _require_scorable(track: Track, walk: Walk) -> None:
+def require_align(name: str) -> Align:
+    """`name` as an alignment.
+
+    Raises
+    ------
+    InputError
+        There is none of that name.
+    """
+    if name not in get_args(Align):
+        raise InputError(f"align = {name!r}: expected one of {', '.join(get_args(Align))}")
+    return cast(Align, name)
+
+
+def require_scorable(track: Track, walk: Walk) -> None:
+    """Raise InputError where a track cannot be judged against a walk."""
+    made, own = WalkIdentity.of(track.meta), WalkIdentity.of(walk.meta)
+    if made is not None and own is not None and made != own:
+        raise InputError(f"track: was made of the walk {made}, and cannot be judged against {own}")
     if len(track) < 2:
         raise InputError(f"track: {len(track)} rows, expected at least 2")
     for name in ("t", "position", "heading"):

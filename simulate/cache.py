@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Callable
-from dataclasses import fields, is_dataclass
-from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import platformdirs
 
-import footfall.models
-from footfall import conventions, streams
 from footfall.errors import InputError
+from footfall.identity import digest_of
 from footfall.models.policy import Policy, stock_policy
+from footfall.simulate.identity import source_digest
 from footfall.simulate.journey import Plan, versions, walk
 from footfall.simulate.walk import Walk, read_walk, write_walk
 
@@ -26,35 +20,9 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("footfall"))
 
 
-@lru_cache(maxsize=1)
-def _source_digest() -> str:
-    """Hash of the code that makes walks, so that a developer's change is never answered from the cache."""
-    digest = hashlib.sha256()
-    rooms = [Path(footfall.models.__file__).parent, Path(__file__).parent]
-    shared = [Path(str(module.__file__)) for module in (conventions, streams)]
-    for source in sorted([*shared, *(path for room in rooms for path in room.glob("*.py"))]):
-        digest.update(source.name.encode() + source.read_bytes())
-    return digest.hexdigest()
-
-
-def _feed(digest: Any, value: Any) -> None:
-    if is_dataclass(value) and not isinstance(value, type):
-        for item in fields(value):
-            digest.update(item.name.encode())
-            _feed(digest, getattr(value, item.name))
-    elif isinstance(value, np.ndarray):
-        digest.update(str((value.dtype.str, value.shape)).encode() + np.ascontiguousarray(value).tobytes())
-    else:
-        digest.update(repr(value).encode())
-
-
 def plan_key(plan: Plan, policy: Policy) -> str:
     """Hash of everything that determines the walk."""
-    digest = hashlib.sha256()
-    digest.update(json.dumps(versions(), sort_keys=True).encode())
-    digest.update((_source_digest() + policy.digest).encode())
-    _feed(digest, plan)
-    return digest.hexdigest()[:32]
+    return digest_of(versions(), source_digest(), policy.digest, plan)[:32]
 
 
 def cached_walk(

@@ -8,6 +8,7 @@ from dataclasses import asdict
 
 import numpy as np
 
+from footfall.identity import digest_of
 from footfall.models.imu import (
     EFFECTS,
     ROOM,
@@ -75,6 +76,7 @@ def add_errors(
             **recording.meta,
             "added": {
                 "imu": unit.spec.name,
+                "imu_digest": digest_of(unit.spec),
                 "unit_seed": unit.seed,
                 "noise_seed": seed,
                 "temperature": asdict(temperature),

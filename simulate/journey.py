@@ -22,6 +22,7 @@ from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import Subject
 from footfall.simulate.disturbance import Push, Pusher, pushes
 from footfall.simulate.ground import ground_lookup
+from footfall.simulate.identity import walk_identity
 from footfall.simulate.route import Route
 from footfall.simulate.steer import Pace, Pursuit, Stop, StrayError, pace_along
 from footfall.simulate.truth import ImuTruth, at_rest, divisor, imu_truth, runs
@@ -360,13 +361,10 @@ def walk(
         stance=rest,
         footfalls=TrueFootfalls(t[rows], truth.position[rows], heading_of(truth.quaternion[rows])),
         meta={
-            "scenario": plan.name,
-            "subject": plan.subject.name,
-            "seed": plan.seed,
+            **walk_identity(plan, policy).as_dict(),
             "pace": plan.pace,
             "rate_hz": plan.rate_hz,
             "calibration_s": plan.calibration,
-            "policy": policy.digest,
             "ends": "standing" if record.stands else "in mid-gait",
             **({"paces_m_m_s": [[pace.distance, pace.speed] for pace in plan.paces]} if plan.paces else {}),
             **_told_pushes(plan, t[-1]),

@@ -8,6 +8,7 @@ from dataclasses import asdict
 
 import numpy as np
 
+from footfall.identity import WALK, digest_of
 from footfall.models.imu import ROOM, Channel, ImuUnit, TemperatureProfile, TriadUnit, stages
 from footfall.recording import Recording
 from footfall.simulate.budget import DriftBudget, drift_budget
@@ -96,14 +97,17 @@ def _recording(
     temperature: TemperatureProfile,
     without: Collection[str],
 ) -> Recording:
+    position, heading = walk.pose_at_rest(BIAS_TIME)
     return Recording(
         t=walk.t - walk.t[0],
         gyro=gyro.copy(),
         accel=_last(_channel(walk, unit, "accel", die, seed), without).copy(),
         temperature=_reported(unit, die),
         meta={
-            **walk.meta,
+            WALK: dict(walk.meta),
+            "start": {"position_m": list(position), "heading_rad": heading},
             "imu": unit.spec.name,
+            "imu_digest": digest_of(unit.spec),
             "unit_seed": unit.seed,
             "noise_seed": seed,
             "temperature": asdict(temperature),

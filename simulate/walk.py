@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from footfall.conventions import heading_of
 from footfall.errors import InputError
 from footfall.tables import Columns, read_table, require_columns, write_table
 
@@ -60,7 +61,7 @@ class Walk:
     contact : (n,) share of the body weight on the instrumented foot
     stance : (n,) bool, the foot is on the ground at rest
     footfalls : the true footfalls
-    meta : provenance (scenario, subject, seeds, rate, mount, versions)
+    meta : its identity (`footfall.identity.WalkIdentity`), pace, rate, calibration, how it ends, versions
     """
 
     t: np.ndarray
@@ -83,6 +84,13 @@ class Walk:
     def calibration_s(self) -> float:
         """Length of the motionless start (s)."""
         return float(self.meta.get("calibration_s", 0.0))
+
+    def pose_at_rest(self, after_s: float) -> tuple[tuple[float, float, float], float]:
+        """Position (m) and heading (rad) of the IMU `after_s` into the motionless start, or at its end."""
+        at = min(after_s, float(self.footfalls.t[0] - self.t[0]))
+        row = max(int(np.searchsorted(self.t - self.t[0], at + 1e-6)) - 1, 0)
+        x, y, z = (float(value) for value in self.position[row])
+        return (x, y, z), float(heading_of(self.quaternion[row]))
 
 
 def footfalls_path(path: str | os.PathLike[str]) -> Path:

@@ -119,6 +119,7 @@ def test_the_cold_is_felt(cli, here):
 
 
 def test_a_track_has_one_row_a_footfall_and_the_methods_evidence(cli, here):
+    assert cli("track rec.parquet --method hdr --heading 0 -o hdr.parquet")[0] == 0
     code, out, err = cli("track rec.parquet --method hdr --heading 90 -o turned.parquet")
     columns, meta = read_table("hdr.parquet")
     assert (code, out) == (0, "")
@@ -128,8 +129,9 @@ def test_a_track_has_one_row_a_footfall_and_the_methods_evidence(cli, here):
     assert abs(len(columns["t"]) - len(read_walk("walk.parquet").footfalls.t)) <= 1
     turned, _ = read_table("turned.parquet")
     np.testing.assert_allclose(turned["heading"] - columns["heading"], np.pi / 2, atol=1e-9)
-    np.testing.assert_allclose(turned["y"], columns["x"], atol=1e-9)
-    np.testing.assert_allclose(turned["x"], -columns["y"], atol=1e-9)
+    x, y, _ = meta["start"]["position_m"]
+    np.testing.assert_allclose(turned["y"] - y, columns["x"] - x, atol=1e-9)
+    np.testing.assert_allclose(turned["x"] - x, -(columns["y"] - y), atol=1e-9)
 
 
 def test_a_track_is_told_the_directions_of_its_building(cli, here):
@@ -141,13 +143,53 @@ def test_a_track_is_told_the_directions_of_its_building(cli, here):
     assert np.abs(heading("--reference 18 --directions 8") - heading("")).max() > 1e-3
 
 
+def test_a_simulated_recording_knows_its_start(cli, here):
+    """So that the steps one by one come to what `run` comes to, and a perfect IMU to the truth."""
+    assert cli("record walk.parquet --imu perfect -o perfect.parquet")[0] == 0
+    assert cli("track perfect.parquet --method pdr -o t.parquet")[0] == 0
+    scores = one_document(cli("score t.parquet walk.parquet --json")[1])
+    assert scores["heading_error_mean_deg"] < 0.1
+    assert scores["position_rmse_m"] < 0.003 * 36
+    assert cli("track perfect.parquet --method pdr --heading 20 -o t.parquet")[0] == 0
+    scores = one_document(cli("score t.parquet walk.parquet --json")[1])
+    assert scores["heading_error_mean_deg"] == pytest.approx(20, abs=4)
+
+
+def test_a_track_may_be_aligned_and_the_score_says_so(cli, here):
+    assert cli("track rec.parquet --method pdr --heading 50 -o t.parquet")[0] == 0
+    final = {}
+    for align, said in (("none", "nothing fitted"), ("start", "first row laid"), ("rigid", "shift and turn")):
+        code, out, err = cli(f"score t.parquet walk.parquet --align {align}")
+        assert (code, err) == (0, "")
+        assert said in out.splitlines()[0]
+        assert max(map(len, out.splitlines())) <= 80
+        scores = one_document(cli(f"score t.parquet walk.parquet --align {align} --json")[1])
+        assert scores["align"] == align
+        final[align] = scores["position_rmse_m"]
+    assert final["none"] > 10 * final["start"] > 0
+    assert final["rigid"] < final["start"]
+
+
+def test_a_track_and_a_walk_are_exported(cli, here):
+    code, out, err = cli("export pdr.parquet --format tum -o pdr.tum")
+    columns, _ = read_table("pdr.parquet")
+    assert (code, out, err) == (0, "", f"{len(columns['t'])} poses: pdr.tum\n")
+    np.testing.assert_allclose(np.loadtxt("pdr.tum")[:, 2], columns["y"], atol=1e-9)
+    assert cli("export walk.parquet -o walk.tum")[0] == 0
+    assert len(np.loadtxt("walk.tum")) == len(read_walk("walk.parquet").t)
+
+
 def test_a_csv_gives_the_same_track(cli, here):
     write_csv("rec.csv", read_table("rec.parquet")[0])
-    assert cli("track rec.csv --method pdr -o csv.parquet")[0] == 0
-    ours, _ = read_table("pdr.parquet")
+    assert cli("track rec.csv --method pdr --heading 0 -o csv.parquet")[0] == 0
+    assert cli("track rec.parquet --method pdr --heading 0 -o pdr.parquet")[0] == 0
+    ours, meta = read_table("pdr.parquet")
+    # A CSV says nothing of its start.
+    for i, axis in enumerate("xyz"):
+        ours[axis] -= meta["start"]["position_m"][i]
     theirs, _ = read_table("csv.parquet")
     for name, values in ours.items():
-        np.testing.assert_array_equal(theirs[name], values)
+        np.testing.assert_allclose(theirs[name], values, rtol=0, atol=1e-12)
 
 
 def test_a_score_for_people_and_for_programs(cli, here):
@@ -157,6 +199,7 @@ def test_a_score_for_people_and_for_programs(cli, here):
     code, document, err = cli("score hdr.parquet walk.parquet --json")
     assert (code, err) == (0, "")
     scores = one_document(document)
+    assert scores.pop("align") == "none"
     assert set(scores) == SCORES
     assert all(f"{value:.3f}" in out for value in scores.values())
     assert scores["heading_error_final_deg"] < 20
@@ -168,7 +211,7 @@ def test_anyones_track_can_be_scored(cli, here):
     write_csv("anyone.csv", {name: falls[name] for name in ("heading", "t", "x", "y", "z")})
     code, out, _ = cli("score anyone.csv walk.parquet --json")
     assert code == 0
-    assert one_document(out) == pytest.approx(dict.fromkeys(SCORES, 0), abs=1e-9)
+    assert one_document(out) == pytest.approx(dict.fromkeys(SCORES, 0) | {"align": "none"}, abs=1e-9)
 
 
 # allan

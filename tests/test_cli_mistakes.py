@@ -1,11 +1,13 @@
 """Bad input ends in one sentence that names the culprit, exit code 2, and nothing half-written."""
 
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from commands import content, expect_one_sentence, write_csv
 
+from footfall.simulate.walk import read_walk, write_walk
 from footfall.tables import read_table
 
 
@@ -34,6 +36,8 @@ def bad(here):
     (here / "folder.parquet").mkdir()
     (here / "file").touch()
     (here / "torn.parquet").write_bytes((here / "rec.parquet").read_bytes()[:5000])
+    walk = read_walk("walk.parquet")
+    write_walk(replace(walk, meta={**walk.meta, "seed": 4}), "elsewhere.parquet")
     (here / "lonely.parquet").write_bytes((here / "walk.parquet").read_bytes())
 
     rec, _ = read_table("rec.parquet")
@@ -144,6 +148,17 @@ REFUSED = [
     ("score gone.parquet walk.parquet", "gone.parquet: no such file"),
     ("score walk.parquet hdr.parquet", "walk.parquet: column 'x' is missing"),
     ("score hdr.parquet lonely.parquet", "lonely.footfalls.parquet: no such file"),
+    (
+        "score hdr.parquet elsewhere.parquet",
+        r"hdr.parquet: was made of the walk short \(seed 3, .*\), and cannot be judged .* short \(seed 4,",
+    ),
+    ("score hdr.parquet walk.parquet --align se3", "align = 'se3': expected one of none, start, yaw, rigid"),
+    ("track walk.parquet -o t.parquet", "walk.parquet: is the truth .*`footfall record walk.parquet --imu"),
+    ("record --from-recording walk.parquet -o t.parquet", "walk.parquet: is the truth of a walk"),
+    ("allan walk.parquet", "walk.parquet: is the truth of a walk"),
+    ("export rec.parquet -o t.tum", "rec.parquet: column 'x' is missing"),
+    ("export hdr.parquet --format kml -o t.tum", "--format 'kml' is unknown, expected tum"),
+    ("export hdr.parquet -o t.parquet", "t.parquet: .*tum"),
     ("score late.csv walk.parquet", "late.csv: .* lies outside the walk"),
     ("score half.csv walk.parquet", "half.csv: .* covers only a part of the walk"),
     ("score lost.csv walk.parquet --json", "lost.csv: x is not finite at row 3"),

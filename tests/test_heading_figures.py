@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from footfall.scenarios.figures import colours_of, maps
+from footfall.scenarios.figures import colours_of, heading_errors, maps
 from footfall.scenarios.heading_figures import evaluation, heading_figures, judging
 from footfall.scenarios.paper import IHDE_TABLE_2, range_text
 from footfall.scenarios.report import run_report
@@ -77,14 +77,29 @@ def test_heading_and_evaluation_are_drawn_as_they_are(walked):
     above, below = figure.axes
     track = walked.tracks["ihde"]
     drawn = {line.get_label(): line.get_xydata() for line in [*above.lines, *below.lines]}
-    started = track.heading[0] - walked.walk.footfalls.heading[0]
-    np.testing.assert_allclose(drawn["IHDE"][:, 1], np.degrees(track.heading - started), atol=1e-6)
+    np.testing.assert_allclose(drawn["IHDE"][:, 1], np.degrees(track.heading), atol=1e-6)
     both = np.vstack([drawn["E, heading corrected"], drawn["E, left alone"]])
     order = np.argsort(both[:, 0])
     np.testing.assert_allclose(both[order, 1], track.evidence["evaluation"])
     active = drawn["E, heading corrected"][:, 1]
     assert (active > track.meta["params"]["gamma2"]).all()
     assert {"truth", "IEZ", "HDE", "IHDE"} <= set(drawn)
+
+
+def test_a_track_from_a_wrong_start_is_drawn_as_it_is(walked):
+    """Nothing is laid on the truth: an error of the start shows in every figure."""
+    track, wrong = walked.tracks["ihde"], 0.3
+    astray = replace(
+        track, position=track.position + np.array([3.0, -2.0, 0.0]), heading=track.heading + wrong
+    )
+    result = replace(walked, tracks={"ihde": astray})
+    lines = {line.get_label(): line.get_xydata() for line in maps([result]).axes[0].lines}
+    np.testing.assert_allclose(lines["IHDE"], astray.position[:, :2])
+    error = max((line.get_ydata() for line in heading_errors([result]).axes[0].lines), key=len)
+    assert error[0] == pytest.approx(math.degrees(wrong), abs=1.0)
+    drawn = {line.get_label(): line.get_ydata() for line in evaluation(result).axes[0].lines}
+    np.testing.assert_allclose(drawn["IHDE"], np.degrees(astray.heading))
+    assert (drawn["IHDE"] - drawn["truth"])[0] == pytest.approx(math.degrees(wrong), abs=1.0)
 
 
 def test_nothing_hides_another(walked):

@@ -81,7 +81,7 @@ def test_the_reported_temperature_is_the_dies_in_the_sensors_steps(walk, nimu):
 def test_a_recording_tells_its_origin(walk, nimu, tmp_path):
     write_recording(record(walk, nimu, seed=5, temperature=COLD, without=["white"]), tmp_path / "r.parquet")
     meta = read_recording(tmp_path / "r.parquet").meta
-    assert meta["scenario"] == "synthetic"
+    assert meta["walk"] == walk.meta
     assert (meta["imu"], meta["unit_seed"], meta["noise_seed"]) == (nimu.spec.name, 11, 5)
     assert meta["without"] == ["white"]
     assert meta["temperature"] == {"start": 20.0, "time": [0.0], "ambient": [-5.0]}

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from synthetic import synthetic_walk
 
@@ -18,7 +18,7 @@ from footfall.scenarios.paper import (
     UNCORRECTED_AVERAGE_RANGE,
     UNCORRECTED_FINAL_RANGE,
 )
-from footfall.scenarios.score import Score, compare, improvement, mean_score, score
+from footfall.scenarios.score import Score, compare, improvement, mean_score, require_align, score
 from footfall.simulate.walk import TrueFootfalls, Walk
 
 
@@ -110,19 +110,73 @@ def test_a_scale_error_stretches_everything_about_the_start(heading, scale):
     assert figures(result) == pytest.approx(expected, abs=1e-9)
 
 
-@given(
-    turns, st.floats(-3, 3), st.floats(-50, 50), st.floats(-50, 50), st.integers(-2, 2), st.integers(0, 99)
-)
-def test_a_track_may_start_anywhere(heading, turn, x, y, whole_turns, seed):
-    walk = planar_walk(heading)
-    track = reckoned(walk, np.cumsum(np.random.default_rng(seed).normal(0, 0.1, len(heading))), 1.02)
+def elsewhere(track, turn, x, y, whole_turns=0):
+    """The track turned about the origin and shifted."""
     c, s = math.cos(turn), math.sin(turn)
-    moved = replace(
+    return replace(
         track,
         position=track.position @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) + [x, y, 3.0],
         heading=track.heading + turn + whole_turns * math.tau,
     )
-    assert figures(score(moved, walk)) == pytest.approx(figures(score(track, walk)), abs=1e-9)
+
+
+@given(turns, st.floats(-3, 3), st.floats(-50, 50), st.floats(-50, 50), st.integers(-2, 2))
+def test_a_track_is_compared_as_it_is(heading, turn, x, y, whole_turns):
+    """The truth from a wrong start: every row is wrong by that, row 0 as well. Whole turns are no error."""
+    walk = planar_walk(heading)
+    moved = elsewhere(truth_as_track(walk), turn, x, y, whole_turns)
+    result, row = score(moved, walk), compare(moved, walk)
+    assert row.heading_error == pytest.approx(np.full(len(heading), turn))
+    assert result.heading_error_mean_deg == pytest.approx(math.degrees(abs(turn)))
+    assert result.heading_error_final_deg == pytest.approx(math.degrees(abs(turn)))
+    place = walk.footfalls.position[:, 0] + 1j * walk.footfalls.position[:, 1]
+    off = np.abs(place * np.exp(1j * turn) + complex(x, y) - place)
+    assert result.position_error_final_m == pytest.approx(off[-1], abs=1e-9)
+    assert result.position_rmse_m == pytest.approx(math.sqrt(np.mean(off**2)), abs=1e-9)
+    np.testing.assert_array_equal(row.estimate, moved.position[:, :2])
+
+
+@pytest.mark.parametrize("align", ["start", "yaw", "rigid"])
+@given(
+    turns, st.floats(-3, 3), st.floats(-50, 50), st.floats(-50, 50), st.integers(-2, 2), st.integers(0, 99)
+)
+def test_an_aligned_track_may_start_anywhere(align, heading, turn, x, y, whole_turns, seed):
+    walk = planar_walk(heading)
+    track = reckoned(walk, np.cumsum(np.random.default_rng(seed).normal(0, 0.1, len(heading))), 1.02)
+    assume(np.ptp(walk.position[:, :2], axis=0).max() > 2)  # on the spot any turn is as good
+    expected = figures(score(track, walk, align))
+    moved = elsewhere(track, turn, x, y, whole_turns)
+    assert figures(score(moved, walk, align)) == pytest.approx(expected, abs=1e-6)
+
+
+def test_each_alignment_fits_what_it_says_and_no_more():
+    walk = planar_walk(np.linspace(0, 2, 40))
+    track = elsewhere(reckoned(walk, np.linspace(0.1, 0.7, 40), 1.02), 0.4, 3.0, -2.0)
+    start, yaw, rigid = (compare(track, walk, align) for align in ("start", "yaw", "rigid"))
+    for row in (start, yaw):
+        np.testing.assert_allclose(row.estimate[0], row.truth[0], atol=1e-12)
+    assert start.heading_error[0] == pytest.approx(0, abs=1e-12)
+    assert yaw.heading_error[0] != pytest.approx(0, abs=1e-2)
+    np.testing.assert_allclose(rigid.estimate.mean(axis=0), rigid.truth.mean(axis=0), atol=1e-12)
+
+    def rms(turn, shift, row):
+        about = row.truth[0] if row is yaw else row.truth.mean(axis=0)
+        c, s = math.cos(turn), math.sin(turn)
+        off = (row.estimate - about) @ np.array([[c, s], [-s, c]]) + about + shift - row.truth
+        return math.sqrt(np.mean(np.sum(off**2, axis=1)))
+
+    for row, align in ((yaw, "yaw"), (rigid, "rigid")):
+        best = rms(0.0, 0.0, row)
+        assert score(track, walk, align).position_rmse_m == pytest.approx(best)
+        assert all(rms(turn, 0.0, row) > best for turn in (-0.01, 0.01))
+        # Headings turn with the places.
+        turned = row.heading_error - compare(track, walk).heading_error
+        assert np.ptp(turned) < 1e-9
+        step = np.diff(track.position[:2, :2], axis=0) @ [1, 1j]
+        assert np.angle((np.diff(row.estimate[:2], axis=0) @ [1, 1j]) / step) == pytest.approx(turned[0])
+    assert all(rms(0.0, shift, rigid) > rms(0, 0, rigid) for shift in ([0.01, 0], [0, -0.01]))
+    assert score(track, walk, "rigid").position_rmse_m < score(track, walk, "yaw").position_rmse_m
+    assert score(track, walk, "yaw").position_rmse_m < score(track, walk, "start").position_rmse_m
 
 
 def test_a_wrapped_heading_is_as_good_as_a_continuous_one():
@@ -171,6 +225,11 @@ def test_scores_are_plain_numbers_for_json():
 
 
 # Refusals
+
+
+def test_an_alignment_that_there_is_none_of_is_refused():
+    with pytest.raises(InputError, match=r"align = 'se3': expected one of none, start, yaw, rigid"):
+        require_align("se3")
 
 
 @pytest.mark.parametrize(

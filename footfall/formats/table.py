@@ -18,7 +18,7 @@ import pyarrow.parquet as pq
 from footfall.errors import InputError
 from footfall.formats.layout import LAYOUTS, Layout
 from footfall.formats.samples import TORN, Samples, Source
-from footfall.recording import ACCEL, GYRO
+from footfall.recording import ACCEL, GYRO, refuse_truth
 from footfall.tables import META_KEY
 
 BLOCK_BYTES = 1 << 22
@@ -41,7 +41,7 @@ def open_table(
     Raises
     ------
     InputError
-        Not readable, or without the columns of that format.
+        Not readable, without the columns of that format, or the truth of a walk.
     """
     parquet = head.startswith(b"PAR1")
     if parquet:
@@ -50,6 +50,7 @@ def open_table(
     else:
         delimiter, names = _header(head)
         meta, rows = {}, path.stat().st_size // max(_row_bytes(head), 1)
+    refuse_truth(path, names)
     layout = _layout(path, names, name)
     if "t" not in layout.columns and rate_hz is None:
         raise InputError(f"{path}: no column of time, and no rate (Hz) was given instead")
