@@ -232,7 +232,7 @@ _SCORE_LABELS = {
 _ALIGNED = {
     "none": "as it is, nothing fitted",
     "start": "its first row laid on the truth",
-    "yaw": "its first row moved to the truth, the turn fitted",
+    "yaw": "its first row moved there, the turn fitted",
     "rigid": "shift and turn fitted",
 }
 
