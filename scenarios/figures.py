@@ -43,6 +43,7 @@ _CAUSES = {
     "white": "#888888",
     "scale": "#7b4fa3",
     "misalignment": "#c98a00",
+    "non_linearity": "#d16ba5",
     "rate_random_walk": "#2a9d8f",
     "g2": "#8d5524",
 }

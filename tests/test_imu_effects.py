@@ -20,8 +20,8 @@ TRUE = RNG.normal(size=(N, 3))
 FORCE = RNG.normal([0, 0, 9.8], size=(N, 3))
 ALL = TriadSpec(
     range=3.0, bandwidth=50.0, resolution=0.01, white=0.01, flicker=0.1, random_walk=0.1, turn_on_sigma=0.3,
-    scale_sigma=0.01, misalignment_sigma=0.01, g_sigma=0.01, g2_sigma=1e-3, temperature_sigma=0.01,
-    temperature2_sigma=1e-3,
+    scale_sigma=0.01, misalignment_sigma=0.01, non_linearity_sigma=0.01, g_sigma=0.01, g2_sigma=1e-3,
+    temperature_sigma=0.01, temperature2_sigma=1e-3,
 )  # fmt: skip
 
 
@@ -42,7 +42,7 @@ def final(chan: Channel, without=()) -> np.ndarray:
 
 def test_the_effects_come_in_the_order_of_the_sensor():
     assert EFFECTS == (
-        "scale", "misalignment", "g_sensitivity", "g2", "temperature", "turn_on", "flicker",
+        "scale", "misalignment", "non_linearity", "g_sensitivity", "g2", "temperature", "turn_on", "flicker",
         "rate_random_walk", "bandwidth", "white", "saturation", "quantisation",
     )  # fmt: skip
     assert tuple(name for name, _ in stages(channel(ALL))) == EFFECTS
@@ -66,7 +66,8 @@ def test_every_effect_of_the_nimu_reaches_the_output(sensor):
         if np.array_equal(signal, previous):
             silent.add(name)
         previous = signal
-    assert silent == (set() if sensor == "gyro" else {"g_sensitivity"})
+    not_published = {"non_linearity"}
+    assert silent == not_published | (set() if sensor == "gyro" else {"g_sensitivity"})
 
 
 @pytest.mark.parametrize("off", EFFECTS)
@@ -101,6 +102,56 @@ def test_scale_and_misalignment_are_one_matrix():
     matrix = np.eye(3) + np.diag(chan.unit.scale) + chan.unit.misalignment
     for row in (0, 17):
         np.testing.assert_allclose(final(chan)[row], matrix @ TRUE[row], rtol=0, atol=1e-14)
+
+
+BENT = TriadSpec(range=40.0, non_linearity_sigma=0.002)
+
+
+def bent(x) -> np.ndarray:
+    """(n, 3) what non-linearity adds, as a share of the largest deviation, to the same input on each axis."""
+    true = np.tile(np.asarray(x)[:, None], 3)
+    chan = channel(BENT, true, np.zeros_like(true))
+    signals = dict(stages(chan))
+    return (signals["non_linearity"] - true) / (40.0 * chan.unit.non_linearity)
+
+
+def test_non_linearity_is_chebyshevs_cubic_over_the_range():
+    """T3(cos a) = cos 3a: nothing at rest, all of it at full scale, as much the other way at half."""
+    angle = np.linspace(0, np.pi, N)
+    found = bent(40 * np.cos(angle))
+    np.testing.assert_allclose(found, np.tile(np.cos(3 * angle)[:, None], 3), rtol=0, atol=1e-9)
+    at = bent([0.0, 40.0, -40.0, 20.0, -20.0])[:, 0]
+    np.testing.assert_allclose(at, [0, 1, -1, -1, 1], rtol=0, atol=1e-9)
+    assert np.abs(found).max() <= 1 + 1e-9
+
+
+def test_no_straight_line_is_closer_to_it():
+    """What a sheet calls non-linearity is the largest deviation from the best line: the scale has its own."""
+    x = np.linspace(-40, 40, 2001)
+    deviation = bent(x)[:, 0]
+    for slope in (-0.1, -0.01, 0.01, 0.1):
+        assert np.abs(deviation - slope * x / 40).max() > 1
+
+
+def test_beyond_full_scale_it_grows_no_more_and_the_range_clips():
+    np.testing.assert_allclose(bent([41.0, 4000.0])[:, 0], 1, rtol=1e-6)
+    wild = np.full((N, 3), 1e4)
+    assert (final(channel(dataclasses.replace(BENT, non_linearity_sigma=0.1), wild)) == 40.0).all()
+
+
+def test_each_axis_is_bent_in_its_own_way_and_hears_no_other():
+    unit = channel(BENT).unit
+    assert len(np.unique(unit.non_linearity)) == 3
+    true = np.zeros((N, 3))
+    true[:, 1] = 30.0
+    added = final(channel(BENT, true)) - true
+    assert (added[:, [0, 2]] == 0).all()
+    assert added[0, 1] == pytest.approx(unit.non_linearity[1] * 40 * (4 * 0.75**3 - 3 * 0.75))
+
+
+def test_a_non_linearity_needs_a_range():
+    with pytest.raises(InputError, match=r"0\.001 of full scale, but no range"):
+        TriadSpec(non_linearity_sigma=0.001)
 
 
 def test_a_steady_force_makes_g_times_force():

@@ -14,6 +14,7 @@ from footfall.streams import stream
 SIGMAS = {
     "scale": "scale_sigma",
     "misalignment": "misalignment_sigma",
+    "non_linearity": "non_linearity_sigma",
     "g": "g_sigma",
     "g2": "g2_sigma",
     "temperature": "temperature_sigma",
@@ -21,8 +22,8 @@ SIGMAS = {
 }
 FULL = ImuSpec(
     "full",
-    gyro=TriadSpec(**dict.fromkeys(SIGMAS.values(), 1.0)),
-    accel=TriadSpec(**{name: 1.0 for name in SIGMAS.values() if name != "g_sigma"}),
+    gyro=TriadSpec(range=1.0, **dict.fromkeys(SIGMAS.values(), 1.0)),
+    accel=TriadSpec(range=1.0, **{name: 1.0 for name in SIGMAS.values() if name != "g_sigma"}),
 )
 
 
@@ -49,6 +50,15 @@ def test_nimu_in_si_units():
     assert spec.thermal.time_constant == 600
 
 
+def test_non_linearity_of_the_second_papers_table_1():
+    """0.03 % of full scale of the accelerometers, 0.01 % of the gyros; none is published of the first's."""
+    spec = load_spec("mtig710")
+    assert spec.accel.non_linearity_sigma * spec.accel.range == pytest.approx(0.0003 * 15 * 9.80665)
+    assert math.degrees(spec.gyro.non_linearity_sigma * spec.gyro.range) == pytest.approx(0.1)
+    nimu = load_spec("nimu")
+    assert nimu.gyro.non_linearity_sigma == nimu.accel.non_linearity_sigma == 0
+
+
 def test_every_stock_sheet_loads_and_draws():
     assert {"nimu", "perfect"} <= set(stock_specs())
     for name in stock_specs():
@@ -71,6 +81,10 @@ def test_a_users_sheet_works_where_a_stock_name_does(tmp_path):
         ('name = "a"\n[gyro]\n[accel]\nrange_g = "15"\n', ["accel.range_g", "'15'"]),
         ('name = "a"\n[gyro]\n[accel]\nrange_g = 0\n', ["accel.range_g", "0"]),
         ('name = "a"\n[gyro]\n[accel]\n[thermal]\nreported = 1\n', ["thermal.reported", "1"]),
+        (
+            'name = "a"\n[gyro]\n[accel]\nnon_linearity_sigma_percent_fs = 0.03\n',
+            ["accel", "0.0003", "no range"],
+        ),
         ('name = "a"\n[gyro]\n', ["accel", "missing"]),
         ("[gyro]\n[accel]\n", ["name", "missing"]),
         ('name = "a\n', ["not valid TOML"]),
@@ -133,7 +147,7 @@ def test_which_elements_a_sensor_has():
 def test_units_scatter_as_the_sheet_says(name):
     """Sum of squares over 200 units against chi squared, two-sided 1e-4."""
     sigma = 0.3
-    spec = ImuSpec("one", gyro=TriadSpec(**{SIGMAS[name]: sigma}))
+    spec = ImuSpec("one", gyro=TriadSpec(range=1.0, **{SIGMAS[name]: sigma}))
     drawn = np.array([getattr(draw_unit(spec, seed).gyro, name) for seed in range(200)])
     values = drawn[drawn != 0]
     low, high = chi2.ppf([5e-5, 1 - 5e-5], len(values))

@@ -52,6 +52,17 @@ def misalignment(x: np.ndarray, channel: Channel) -> np.ndarray:
     return x + channel.true @ channel.unit.misalignment.T
 
 
+def non_linearity(x: np.ndarray, channel: Channel) -> np.ndarray:
+    """Deviation of each axis from the best straight line through its range: n FS T3(x / FS).
+
+    T3(u) = 4 u^3 - 3 u, the third Chebyshev polynomial: the cubic whose best line is zero, so that a
+    calibrated scale factor leaves it. It is as far off at full scale as, the other way, at half of it.
+    """
+    full_scale = channel.unit.spec.range
+    u = np.clip(channel.true / full_scale, -1, 1)  # what lies beyond is clipped later
+    return x + channel.unit.non_linearity * full_scale * (4 * u**3 - 3 * u)
+
+
 def g_sensitivity(x: np.ndarray, channel: Channel) -> np.ndarray:
     return x + channel.force @ channel.unit.g.T
 
@@ -128,6 +139,7 @@ def gauss_markov(
 _CHAIN: dict[str, tuple[Effect, Callable[[TriadUnit], ArrayLike]]] = {
     "scale": (scale, lambda unit: unit.scale),
     "misalignment": (misalignment, lambda unit: unit.misalignment),
+    "non_linearity": (non_linearity, lambda unit: unit.non_linearity),
     "g_sensitivity": (g_sensitivity, lambda unit: unit.g),
     "g2": (g2, lambda unit: unit.g2),
     "temperature": (temperature, lambda unit: (unit.temperature, unit.temperature2)),

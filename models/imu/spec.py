@@ -40,10 +40,16 @@ class TriadSpec:
     turn_on_sigma : unit, bias that changes from switch-on to switch-on
     scale_sigma : 1, scale factor error of each axis
     misalignment_sigma : rad, each off-diagonal element of the scale and misalignment matrix
+    non_linearity_sigma : 1, largest deviation of each axis from a straight line, as a share of `range`
     g_sigma : unit/(m/s2), each element of the g-sensitivity matrix G (gyros only)
     g2_sigma : unit/(m/s2)2, each element of the rectification G2; accelerometers have its diagonal only
     temperature_sigma : unit/K, residual of the temperature compensation, linear
     temperature2_sigma : unit/K2, the same, quadratic about the reference temperature
+
+    Raises
+    ------
+    InputError
+        A non-linearity without a range that it is a share of.
     """
 
     range: float = math.inf
@@ -55,10 +61,17 @@ class TriadSpec:
     turn_on_sigma: float = 0.0
     scale_sigma: float = 0.0
     misalignment_sigma: float = 0.0
+    non_linearity_sigma: float = 0.0
     g_sigma: float = 0.0
     g2_sigma: float = 0.0
     temperature_sigma: float = 0.0
     temperature2_sigma: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.non_linearity_sigma > 0 and math.isinf(self.range):
+            raise InputError(
+                f"non-linearity of {self.non_linearity_sigma:g} of full scale, but no range is given"
+            )
 
 
 @dataclass(frozen=True)
@@ -100,6 +113,7 @@ GYRO_KEYS = {
     "turn_on_sigma_deg_s": ("turn_on_sigma", DEG),
     "scale_sigma": ("scale_sigma", 1.0),
     "misalignment_sigma_deg": ("misalignment_sigma", DEG),
+    "non_linearity_sigma_percent_fs": ("non_linearity_sigma", 0.01),
     "g_sensitivity_sigma_deg_s_g": ("g_sigma", DEG / GRAVITY),
     "g2_sigma_deg_s_g2": ("g2_sigma", DEG / GRAVITY**2),
     "temperature_sigma_deg_s_k": ("temperature_sigma", DEG),
@@ -115,6 +129,7 @@ ACCEL_KEYS = {
     "turn_on_sigma_mg": ("turn_on_sigma", 1e-3 * GRAVITY),
     "scale_sigma": ("scale_sigma", 1.0),
     "misalignment_sigma_deg": ("misalignment_sigma", DEG),
+    "non_linearity_sigma_percent_fs": ("non_linearity_sigma", 0.01),
     "g2_sigma_ug_g2": ("g2_sigma", 1e-6 / GRAVITY),
     "temperature_sigma_mg_k": ("temperature_sigma", 1e-3 * GRAVITY),
     "temperature2_sigma_mg_k2": ("temperature2_sigma", 1e-3 * GRAVITY),
@@ -162,7 +177,8 @@ def load_spec(name_or_path: str | os.PathLike[str]) -> ImuSpec:
     Raises
     ------
     InputError
-        Neither a stock name nor a file; a key that is unknown, or its value of the wrong kind or negative.
+        Neither a stock name nor a file; a key that is unknown, or its value of the wrong kind or negative; a
+        non-linearity without a range.
     """
     if (name := os.fspath(name_or_path)) in stock_specs():
         path = SHEETS / f"{name}.toml"
@@ -173,8 +189,8 @@ def load_spec(name_or_path: str | os.PathLike[str]) -> ImuSpec:
     thermal = sheet.thermal
     return ImuSpec(
         name=sheet.name,
-        gyro=_triad(sheet.gyro, GYRO_KEYS),
-        accel=_triad(sheet.accel, ACCEL_KEYS),
+        gyro=_triad(f"{path}: gyro", sheet.gyro, GYRO_KEYS),
+        accel=_triad(f"{path}: accel", sheet.accel, ACCEL_KEYS),
         thermal=ThermalSpec(
             time_constant=thermal.time_constant_s,
             reference=thermal.reference_degC,
@@ -184,6 +200,9 @@ def load_spec(name_or_path: str | os.PathLike[str]) -> ImuSpec:
     )
 
 
-def _triad(sheet: BaseModel, keys: _Keys) -> TriadSpec:
+def _triad(where: str, sheet: BaseModel, keys: _Keys) -> TriadSpec:
     given = {key: value for key, value in sheet.model_dump().items() if value is not None}
-    return TriadSpec(**{keys[key][0]: keys[key][1] * value for key, value in given.items()})
+    try:
+        return TriadSpec(**{keys[key][0]: keys[key][1] * value for key, value in given.items()})
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None

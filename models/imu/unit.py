@@ -19,6 +19,7 @@ class TriadUnit:
     spec : the sheet's numbers, which every unit shares
     scale : (3,) scale factor errors
     misalignment : (3, 3) rad, zero diagonal: row = sensing axis, column = true axis
+    non_linearity : (3,) largest deviation from a straight line, as a share of the range
     g : (3, 3) unit/(m/s2), g-sensitivity: row = sensing axis, column = axis of the specific force
     g2 : (3, 3) unit/(m/s2)2, rectification of the squared specific force
     temperature : (3,) unit/K
@@ -28,6 +29,7 @@ class TriadUnit:
     spec: TriadSpec
     scale: np.ndarray
     misalignment: np.ndarray
+    non_linearity: np.ndarray
     g: np.ndarray
     g2: np.ndarray
     temperature: np.ndarray
@@ -61,6 +63,7 @@ def draw_unit(spec: ImuSpec, seed: int) -> ImuUnit:
             spec=sheet,
             scale=draw("scale", sheet.scale_sigma, 3),
             misalignment=draw("misalignment", sheet.misalignment_sigma, 3, 3) * (1 - np.eye(3)),
+            non_linearity=draw("non_linearity", sheet.non_linearity_sigma, 3),
             g=draw("g", sheet.g_sigma, 3, 3),
             g2=draw("g2", sheet.g2_sigma, 3, 3) * g2_mask,
             temperature=draw("temperature", sheet.temperature_sigma, 3),
