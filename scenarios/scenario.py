@@ -9,7 +9,7 @@ from itertools import pairwise
 from pathlib import Path as File
 from typing import Annotated
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from footfall.errors import InputError
 from footfall.models.body import MOUNTS
@@ -48,14 +48,31 @@ SubjectEntry = Annotated[
 ]
 
 
+def _listed(value: object) -> object:
+    return value if isinstance(value, list) else [value]
+
+
+# A number for every walk, or a list that is used in turn from walk to walk.
+_WanderM = Annotated[
+    tuple[Annotated[float, Field(ge=0, le=0.5)], ...],
+    Field(strict=False, min_length=1),
+    BeforeValidator(_listed),
+]
+_WanderTimeS = Annotated[
+    tuple[Annotated[float, Field(ge=0.5, le=60)], ...],
+    Field(strict=False, min_length=1),
+    BeforeValidator(_listed),
+]
+
+
 class GaitTable(Strict):
     """How the path is walked. `variability` 1 is that of people, 0 a metronome's."""
 
     pace_m_s: float = Field(ge=0.7, le=1.7)
     variability: float = Field(1.0, ge=0, le=1.5)
     action_noise: float = Field(0.0, ge=0, le=0.3)
-    wander_m: float = Field(0.0, ge=0, le=0.5)
-    wander_time_s: float = Field(4.0, ge=0.5, le=60)
+    wander_m: _WanderM = (0.0,)
+    wander_time_s: _WanderTimeS = (4.0,)
 
 
 class StopTable(Strict):
@@ -139,7 +156,7 @@ class Scenario:
     stops : pauses, in walking order
     pace : m/s, asked of the walker on straights; paces : changes of it, in walking order
     variability : of the gait, 1 = that of people; action_noise : SD of the noise on the walker's actions
-    wander, wander_time : m and s, slow lateral wander of the steering's aim
+    wander, wander_time : m and s, slow lateral wander of the steering's aim; each used in turn
     push, push_every : N s and s, pushes at the trunk; 0: none
     temperature : of the air around the sensor from the recording's start
     imu : stock name or path of a data sheet
@@ -160,8 +177,8 @@ class Scenario:
     paces: tuple[Pace, ...]
     variability: float
     action_noise: float
-    wander: float
-    wander_time: float
+    wander: tuple[float, ...]
+    wander_time: tuple[float, ...]
     push: float
     push_every: float
     temperature: TemperatureProfile
@@ -195,8 +212,8 @@ class Scenario:
             stops=self.stops,
             variability=self.variability,
             action_noise=self.action_noise,
-            wander=self.wander,
-            wander_time=self.wander_time,
+            wander=self.wander[walk % len(self.wander)],
+            wander_time=self.wander_time[walk % len(self.wander_time)],
             push=self.push,
             push_every=self.push_every,
             calibration=self.calibration,

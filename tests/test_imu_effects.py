@@ -134,7 +134,7 @@ def test_no_straight_line_is_closer_to_it():
 
 
 def test_beyond_full_scale_it_grows_no_more_and_the_range_clips():
-    np.testing.assert_allclose(bent([41.0, 4000.0])[:, 0], 1, rtol=1e-6)
+    np.testing.assert_allclose(bent([41.0, 4000.0, -41.0])[:, 0], [1, 1, -1], rtol=1e-6)
     wild = np.full((N, 3), 1e4)
     assert (final(channel(dataclasses.replace(BENT, non_linearity_sigma=0.1), wild)) == 40.0).all()
 

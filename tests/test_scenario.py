@@ -52,7 +52,7 @@ def test_stock_scenarios_are_1800_m_and_walkable(name):
     assert route.length == pytest.approx(1800, abs=0.01)
     assert np.abs(route.curvature).max() <= 1 / MIN_RADIUS_M + 1e-12
     assert 1.0 <= scenario.pace <= 1.5
-    assert scenario.wander > 0
+    assert min(scenario.wander) > 0
     assert scenario.path.closed == (name in ("closed-loop", "closed-loop-gentle", "turning"))
     load_spec(scenario.imu)
 
@@ -111,8 +111,25 @@ def test_a_plan_holds_what_the_file_says():
     assert [plan.subject.name for plan in plans] == ["reference", "shorter", "reference"]
     assert plans[0].route is scenario.path.route
     assert plans[0].ground is plans[1].ground is scenario.terrain
-    assert (plans[0].pace, plans[0].rate_hz, plans[0].wander) == (scenario.pace, 200, scenario.wander)
+    assert (plans[0].pace, plans[0].rate_hz, plans[0].wander) == (scenario.pace, 200, scenario.wander[0])
     assert scenario.temperature == TemperatureProfile.step(20.0, -5.0)
+
+
+def test_swaying_sways_more_from_walk_to_walk_on_one_straight():
+    """From the sway at the footfall rate alone to a wide, slow one; then over again."""
+    scenario = load_scenario("swaying")
+    route = scenario.path.route
+    assert not route.curvature.any()
+    assert route.length == pytest.approx(900)
+    plans = [scenario.plan(walk) for walk in range(4)]
+    assert [(plan.wander, plan.wander_time) for plan in plans] == [
+        (0.0, 4.0),
+        (0.1, 4.0),
+        (0.3, 8.0),
+        (0.0, 4.0),
+    ]
+    assert len({plan.subject.name for plan in plans}) == 1
+    assert scenario.walks == 3
 
 
 def test_a_plan_holds_pauses_and_changes_of_pace():
@@ -238,6 +255,14 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
             'imu = "nimu"',
             'imu = "nimu"\nrate_hz = 300',
             r"sensor.rate_hz: rate = 300 Hz does not divide the physics rate",
+        ),
+        ("pace_m_s = 1.2", "pace_m_s = 1.2\nwander_m = 0.6", r"gait.wander_m.0 = 0.6: .* equal to 0.5"),
+        ("pace_m_s = 1.2", 'pace_m_s = 1.2\nwander_m = "0.1"', r"gait.wander_m.0 = '0.1': .* valid number"),
+        ("pace_m_s = 1.2", "pace_m_s = 1.2\nwander_m = []", r"gait.wander_m: .* at least 1"),
+        (
+            "pace_m_s = 1.2",
+            "pace_m_s = 1.2\nwander_time_s = [4.0, 0.1]",
+            r"gait.wander_time_s.1 = 0.1: .* equal to 0.5",
         ),
         ("base = 40", "base = -1", r"seeds.base = -1: .* greater than or equal to 0"),
         ("base = 40", "base = 1.5", r"seeds.base = 1.5: .* valid integer"),
