@@ -28,6 +28,18 @@ def test_the_sampling_rate_makes_no_difference():
     np.testing.assert_allclose(profile.die(T, TAU), fine[::10], rtol=0, atol=1e-9)
 
 
+def test_the_die_sets_out_at_the_records_first_stamp():
+    die = TemperatureProfile.step(20.0, -5.0).die(T + 300.0, TAU)
+    np.testing.assert_allclose(die, -5 + 25 * np.exp(-T / TAU), rtol=0, atol=1e-10)
+
+
+def test_instants_may_be_close_together():
+    """A door that opens: 10 degC down within a tenth of a second."""
+    profile = TemperatureProfile(20.0, (10.0, 10.1), (20.0, 10.0))
+    die = profile.die(np.arange(0, 20, 0.05), 5.0)
+    assert die[-1] == pytest.approx(10 + 10 * np.exp(-(19.95 - 10.05) / 5.0), abs=1e-3)
+
+
 def test_a_steady_die_stays_exactly_where_it_is():
     assert (TemperatureProfile.steady(21.7).die(T, TAU) == 21.7).all()
 

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from synthetic_foot import walk
 
+from footfall.conventions import GRAVITY
 from footfall.pdr.stance import StanceParams, ThresholdDetector, find_stances, moving_mean
 
 STRIDES = 30
@@ -114,3 +115,67 @@ def test_another_detector_only_needs_to_say_how_unquiet_it_is():
     truth = walk(np.zeros(STRIDES + 1), still_s=2.0)
     found = find_stances(truth.t[1:], by_force(truth.t[1:], truth.gyro[1:], truth.accel[1:]))
     assert len(found.footfalls) == STRIDES + 1
+
+
+def scores(gyro, accel, rate=200.0):
+    return ThresholdDetector()(np.arange(len(gyro)) / rate, gyro, accel)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_rest_ends_at_60_degrees_a_second_and_at_4_metres_a_second_squared_off_g(axis):
+    n = 40
+    turning, level = np.zeros((n, 3)), np.tile([0.0, 0.0, GRAVITY], (n, 1))
+    turning[:, axis] = -np.radians(60.0)
+    np.testing.assert_allclose(scores(turning, level), 1.0, rtol=1e-12)
+    for force in (GRAVITY + 4.0, GRAVITY - 4.0):
+        pushed = np.zeros((n, 3))
+        pushed[:, axis] = force  # which way is up does not matter
+        np.testing.assert_allclose(scores(np.zeros((n, 3)), pushed), 1.0, rtol=1e-12)
+    assert (scores(np.zeros((n, 3)), level) < 1e-12).all()
+    # The worse of the two counts.
+    np.testing.assert_allclose(scores(turning, 1.2 * level), 1.0, rtol=1e-12)
+    np.testing.assert_allclose(scores(0.2 * turning, 1.2 * level), 0.2 * GRAVITY / 4.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("rate", "samples"), [(200.0, 5), (100.0, 3), (1000.0, 21)])
+def test_a_jolt_counts_by_its_mean_over_20_milliseconds(rate, samples):
+    """The window holds so many samples at each rate; both sensors are averaged before anything is squared."""
+    n = 101
+    level = np.tile([0.0, 0.0, GRAVITY], (n, 1))
+    jolted = np.zeros((n, 3))
+    jolted[50, 1] = np.radians(60.0) * samples
+    found = scores(jolted, level, rate)
+    assert np.count_nonzero(found > 1e-9) == samples
+    np.testing.assert_allclose(found[found > 1e-9], 1.0, rtol=1e-9)
+    pushed = level.copy()
+    pushed[50, 2] += 4.0 * samples
+    found = scores(np.zeros((n, 3)), pushed, rate)
+    assert np.count_nonzero(found > 1e-9) == samples
+    np.testing.assert_allclose(found[found > 1e-9], 1.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("rest_s", "count"), [(0.09, 1), (0.11, 2)])
+def test_a_stance_takes_a_tenth_of_a_second(rest_s, count):
+    t, score = score_of((1.0, 1.3, 0.1), (2.0, 2.0 + rest_s + 1e-9, 0.1))
+    assert len(find_stances(t, score).footfalls) == count
+
+
+@pytest.mark.parametrize(("apart_s", "count"), [(0.38, 1), (0.42, 2)])
+def test_two_stances_are_four_tenths_of_a_second_apart(apart_s, count):
+    t, score = score_of((1.0, 1.2, 0.5), (1.1 + apart_s - 0.05, 1.1 + apart_s + 0.1, 0.5))
+    score[220] = score[220 + round(apart_s / 0.005)] = 0.1  # their quietest instants, at 1.1 s and later
+    found = find_stances(t, score)
+    assert len(found.footfalls) == count
+    if count == 2:
+        assert np.diff(t[found.resets[found.footfalls]]) == pytest.approx(apart_s)
+
+
+@pytest.mark.parametrize(("rest_s", "resets"), [(0.55, 1), (0.65, 2), (1.0, 3), (3.1, 10)])
+def test_a_stance_longer_than_two_resets_is_a_still_period(rest_s, resets):
+    """One reset in each part of 0.3 s or a little more."""
+    t, score = score_of((1.0, 1.0 + rest_s + 1e-9, 0.1))
+    found = find_stances(t, score)
+    assert len(found.resets) == resets
+    assert found.footfalls.tolist() == [resets - 1]
+    parts = (t[found.resets] - 1.0) // (rest_s / resets - 1e-3)
+    assert parts.tolist() == list(range(resets))

@@ -10,7 +10,7 @@ from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
 from footfall.pdr.strapdown import integrate
 from footfall.simulate._truth_kernels import increments
-from footfall.simulate.truth import at_rest, divisor, imu_truth, runs
+from footfall.simulate.truth import ImuTruth, at_rest, divisor, imu_truth, runs
 
 STEP = 0.001
 
@@ -98,6 +98,55 @@ def test_rest_needs_load_slowness_and_length() -> None:
     assert not at_rest(truth, np.zeros_like(contact), 5 * STEP).any()
     brief = (truth.index > 100) & (truth.index < 140)  # 40 ms of load
     assert not at_rest(truth, brief.astype(float), 5 * STEP).any()
+
+
+def moving(speed: float = 0.0, rate: float = 0.0, n: int = 100) -> ImuTruth:
+    """An IMU that travels at `speed` (m/s) and turns at `rate` (rad/s), aslant to every axis."""
+    still, aslant = np.zeros((n, 3)), np.array([2.0, -1.0, 2.0]) / 3
+    upright = np.tile([1.0, 0, 0, 0], (n, 1))
+    return ImuTruth(np.arange(n), still, upright, still + speed * aslant, still + rate * aslant, still)
+
+
+@pytest.mark.parametrize(
+    ("truth", "load", "resting"),
+    [
+        (moving(speed=0.19), 1.0, True),
+        (moving(speed=0.21), 1.0, False),  # a foot that is put down still rolls and slides by less
+        (moving(rate=1.15), 1.0, True),
+        (moving(rate=1.25), 1.0, False),
+        (moving(), 0.021, True),
+        (moving(), 0.019, False),
+    ],
+)
+def test_where_rest_ends(truth: ImuTruth, load: float, resting: bool) -> None:
+    """0.20 m/s, 1.2 rad/s and 2 % of the body weight."""
+    assert (at_rest(truth, np.full(100, load), 0.005) == resting).all()
+
+
+def rest_of(*stretches: tuple[int, int], n: int = 100) -> np.ndarray:
+    """Where the foot rests, of which nothing but the load says that it does: from and to samples of 5 ms."""
+    load = np.zeros(n)
+    for start, end in stretches:
+        load[start:end] = 1.0
+    return at_rest(moving(n=n), load, 0.005)
+
+
+def test_a_twitch_of_less_than_40_ms_is_bridged() -> None:
+    assert runs(rest_of((20, 40), (47, 80))).tolist() == [[20, 80]]
+    assert runs(rest_of((20, 40), (49, 80))).tolist() == [[20, 40], [49, 80]]
+
+
+def test_nothing_is_bridged_beyond_the_record() -> None:
+    """The foot may come from a swing, or go into one, that the record does not show."""
+    assert runs(rest_of((3, 97))).tolist() == [[3, 97]]
+
+
+def test_a_rest_of_less_than_60_ms_is_none() -> None:
+    assert runs(rest_of((20, 31), (60, 73))).tolist() == [[60, 73]]
+
+
+def test_twitches_are_bridged_before_short_rests_are_dropped() -> None:
+    assert runs(rest_of((20, 30), (34, 44))).tolist() == [[20, 44]]
 
 
 def test_heading_is_unwrapped() -> None:
