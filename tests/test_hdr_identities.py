@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from synthetic_foot import footfalls
 
 from footfall.errors import InputError
-from footfall.hdr.hdr import Footfall, Hdr, HdrParams, headings, trace
+from footfall.hdr.hdr import Footfall, Hdr, HdrParams, HdrStep, headings, trace
 
 DEG = np.pi / 180
 TINY = 1e-12
@@ -147,3 +147,16 @@ def test_degrees_only_at_the_edge():
     params = HdrParams.from_degrees(i_c_deg_s=0.007, theta_w_deg_s=0.25)
     assert params == HdrParams()
     assert params.theta_w == pytest.approx(0.25 * DEG)
+    assert HdrParams.from_degrees() == params
+    assert HdrParams.from_degrees(tau_s=3.0).tau_s == 3.0
+
+
+def test_before_the_first_footfall_every_state_is_zero_and_nothing_is_attenuated():
+    walk = strides(3)
+    first = HdrStep(*(column[0] for column in trace(walk)))
+    assert first == HdrStep() == (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def test_the_basic_controller_has_neither_filter_nor_attenuator():
+    """Section 2 of the paper: the same increment, on the raw rate, however fast it turns."""
+    assert HdrParams.basic() == HdrParams(tau_s=0.0, i_c=HdrParams().i_c, theta_w=np.inf)

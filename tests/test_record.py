@@ -78,6 +78,12 @@ def test_the_reported_temperature_is_the_dies_in_the_sensors_steps(walk, nimu):
     assert 5 < len(np.unique(recording.temperature)) < len(walk.t) / 10
 
 
+def test_without_a_word_on_the_temperature_it_is_20_degrees_all_along(walk, nimu):
+    reported = record(walk, nimu, seed=1).temperature
+    assert np.ptp(reported) == 0
+    assert reported[0] == pytest.approx(20.0, abs=0.018165 / 2)
+
+
 def test_a_recording_tells_its_origin(walk, nimu, tmp_path):
     write_recording(record(walk, nimu, seed=5, temperature=COLD, without=["white"]), tmp_path / "r.parquet")
     meta = read_recording(tmp_path / "r.parquet").meta

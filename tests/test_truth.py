@@ -139,6 +139,7 @@ def test_a_twitch_of_less_than_40_ms_is_bridged() -> None:
 def test_nothing_is_bridged_beyond_the_record() -> None:
     """The foot may come from a swing, or go into one, that the record does not show."""
     assert runs(rest_of((3, 97))).tolist() == [[3, 97]]
+    assert runs(rest_of((0, 1), (3, 97), (99, 100))).tolist() == [[0, 100]]
 
 
 def test_a_rest_of_less_than_60_ms_is_none() -> None:
