@@ -139,8 +139,11 @@ def test_settings_that_make_no_sense_are_refused(values, match):
 def test_an_interval_that_is_not_positive_is_refused():
     with pytest.raises(InputError, match="interval of 0"):
         Hdr().update(Footfall(0.0, 0.1))
-    with pytest.raises(InputError, match="not positive"):
-        headings([footfalls(np.zeros(3), np.array([1.0, 0.0, 1.0]))], [HdrParams()])
+    for stride in range(3):
+        interval = np.ones(3)
+        interval[stride] = 0.0
+        with pytest.raises(InputError, match="not positive"):
+            headings([footfalls(np.zeros(3), interval)], [HdrParams()])
 
 
 def test_degrees_only_at_the_edge():
