@@ -74,6 +74,25 @@ def score_of(*rests, end=10.0):
     return t, score
 
 
+def test_a_mean_over_what_is_no_number_is_none_and_other_windows_do_not_feel_it():
+    t = np.arange(40) / 200
+    values = np.random.default_rng(0).normal(3.0, 1.0, (40, 3))
+    holed = values.copy()
+    holed[20, 1], holed[0, 0] = np.nan, np.inf
+    found, whole = moving_mean(holed, t, 0.02), moving_mean(values, t, 0.02)
+    assert np.isnan(found[18:23, 1]).all()
+    assert np.isnan(found[:3, 0]).all()
+    assert np.isnan(found).sum() == 8
+    kept = np.isfinite(found)
+    np.testing.assert_allclose(found[kept], whole[kept], atol=1e-12)
+
+
+@pytest.mark.parametrize(("level", "count"), [(0.99, 1), (1.0, 0)])
+def test_rest_is_a_score_below_one(level, count):
+    t, score = score_of((1.0, 1.3, level))
+    assert len(find_stances(t, score).footfalls) == count
+
+
 def test_a_moment_of_rest_in_swing_is_no_stance():
     t, score = score_of((1.0, 1.3, 0.1), (1.7, 1.76, 0.9), (2.1, 2.4, 0.1))
     assert len(find_stances(t, score).footfalls) == 2
