@@ -119,7 +119,7 @@ class Job:
     def reckoning(self, walk: Walk) -> Reckoning:
         unit = draw_unit(load_spec(self.scenario.imu), self.seed)
         return Reckoning(
-            record(walk, unit, seed=self.seed, temperature=self.scenario.temperature), start_pose(walk)
+            record(walk, unit, seed=self.seed, temperature=self.scenario.temperature_of(0)), start_pose(walk)
         )
 
 

@@ -113,6 +113,12 @@ def run(
         int,
         typer.Option(min=0, help="So many other units of the IMU are scored too, shared among the walks."),
     ] = 50,
+    noises: Annotated[
+        int,
+        typer.Option(
+            min=0, help="So many other noises of each walk's own unit are scored too, for what is chance."
+        ),
+    ] = 10,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for the results; out/SCENARIO if left out.", show_default=False),
@@ -133,7 +139,14 @@ def run(
     chosen = load_scenario(scenario)
     names = tuple(dict.fromkeys(name.strip() for name in methods.split(",")))
     todo = tasks(
-        chosen, walks=walks, seed=seed, imu=imu, methods=names, other_units=units, use_cache=not no_cache
+        chosen,
+        walks=walks,
+        seed=seed,
+        imu=imu,
+        methods=names,
+        other_units=units,
+        noises=noises,
+        use_cache=not no_cache,
     )
     folder = out or Path("out") / chosen.name
     with results_folder(folder):

@@ -32,6 +32,14 @@ def record(
     unit_seed: Annotated[
         int, typer.Option(min=0, help="Which individual of that IMU: each seed is another one.")
     ] = 1,
+    noise_seed: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            help="Which recording of it: noise and turn-on bias; the number of --unit-seed if left out.",
+            show_default=False,
+        ),
+    ] = None,
     without: Annotated[
         list[str] | None,
         typer.Option(
@@ -69,16 +77,15 @@ def record(
     if walk is not None and (format != "auto" or unit or rate is not None):
         raise InputError("record: --format, --unit and --rate tell how to read --from-recording, not a walk")
     worn = draw_unit(load_spec(imu), unit_seed)
+    noise = unit_seed if noise_seed is None else noise_seed
     air = TemperatureProfile.step(indoors, outdoors)
     with ERR.status("recording"):
         if walk is not None:
-            recording = record_walk(
-                read_walk(walk), worn, seed=unit_seed, temperature=air, without=without or ()
-            )
+            recording = record_walk(read_walk(walk), worn, seed=noise, temperature=air, without=without or ())
         else:
             assert from_recording is not None
             real, _ = read(from_recording, format, sizes=parse_units(unit or ()), rate_hz=rate)
-            recording = add_errors(real, worn, seed=unit_seed, temperature=air, without=without or ())
+            recording = add_errors(real, worn, seed=noise, temperature=air, without=without or ())
         write_recording(recording, output)
     say(f"{len(recording.t)} samples: {output}")
 

@@ -15,11 +15,14 @@ def perform_showing(todo: Sequence[Task]) -> list[Result]:
     """All results, with one progress bar a walk."""
     length = todo[0].scenario.path.route.length
 
-    def show(index: int, metres: float, unit: int) -> None:
+    def show(index: int, metres: float, count: int) -> None:
         task = todo[index]
+        units, noises = len(task.others), len(task.noises)
         label = f"walk {task.number + 1}, unit {task.unit_seed}"
-        if unit:
-            label = f"walk {task.number + 1}, other unit {unit} of {len(task.others)}"
+        if count > units:
+            label = f"walk {task.number + 1}, other noise {count - units} of {noises}"
+        elif count:
+            label = f"walk {task.number + 1}, other unit {count} of {units}"
         progress.update(bars[index], completed=round(metres), description=label)
 
     text, metre = TextColumn("{task.description}"), TextColumn("m")

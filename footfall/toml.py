@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tomllib
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -42,7 +43,7 @@ def read_toml(path: str | os.PathLike[str], model: type[Model]) -> Model:
         return model.model_validate(content)
     except ValidationError as error:
         first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
+        key = ".".join(_written(content, first["loc"]))
         if first["type"] == "extra_forbidden":
             raise InputError(f"{source}: unknown key {key!r} = {first['input']!r}") from None
         if first["type"] == "missing":
@@ -51,3 +52,14 @@ def read_toml(path: str | os.PathLike[str], model: type[Model]) -> Model:
         value = "" if isinstance(first["input"], dict | list) else f" = {first['input']!r}"
         reason = first["msg"].removeprefix("Value error, ")
         raise InputError(f"{source}: {key}{value}: {reason}" if key else f"{source}: {reason}") from None
+
+
+def _written(content: object, location: Sequence[int | str]) -> Iterator[str]:
+    """The parts of a key as they stand in the file: pydantic puts the tags of alternatives between them."""
+    for i, part in enumerate(location):
+        listed = isinstance(content, list) and isinstance(part, int)
+        if listed or (isinstance(content, dict) and part in content):
+            content = content[part]  # type: ignore[index]
+        elif not isinstance(content, dict) or i < len(location) - 1:  # or else a key that is missing
+            continue
+        yield str(part)

@@ -30,13 +30,18 @@ def spread(values: Sequence[float]) -> dict[str, float]:
     }
 
 
+def extent(values: Sequence[float]) -> dict[str, float]:
+    """Median, smallest and largest."""
+    return {"median": float(np.median(values)), "smallest": float(min(values)), "largest": float(max(values))}
+
+
 def scores_by_method(rows: Sequence[Mapping[str, Score]]) -> dict[str, list[Score]]:
     """Method -> its score in each row."""
     return {name: [row[name] for row in rows] for name in rows[0]} if rows else {}
 
 
 def as_json(scenario: str, results: Sequence[Result]) -> dict[str, Any]:
-    """The document of `run --json` (see the README); `other_units` sums up the units drawn beside."""
+    """The document of `run --json` (docs/scores.md)."""
     document: dict[str, Any] = {
         "scenario": scenario,
         "distance_m": float(np.mean([_distance(result) for result in results])),
@@ -47,9 +52,11 @@ def as_json(scenario: str, results: Sequence[Result]) -> dict[str, Any]:
                 "seed": result.task.walk_seed,
                 "imu": result.task.imu,
                 "unit": result.task.unit_seed,
+                "noise": result.task.noise_seed,
                 "subject": result.walk.meta["subject"],
                 "footfalls": len(next(iter(result.tracks.values()))),
                 "methods": {name: score.as_dict() for name, score in result.scores.items()},
+                **_noises_document(result.noises),
             }
             for result in results
         ],
@@ -58,6 +65,7 @@ def as_json(scenario: str, results: Sequence[Result]) -> dict[str, Any]:
             for name, scores in scores_by_method([result.scores for result in results]).items()
         },
     }
+    document |= _noises_document(_mean_by_noise(results))
     others = scores_by_method([row for result in results for row in result.others])
     if others:
         document["other_units"] = {
@@ -68,6 +76,26 @@ def as_json(scenario: str, results: Sequence[Result]) -> dict[str, Any]:
             },
         }
     return document
+
+
+def _mean_by_noise(results: Sequence[Result]) -> list[dict[str, Score]]:
+    """For each further noise of the walks' own units: method -> mean over the walks."""
+    rounds = zip(*(result.noises for result in results), strict=True)
+    return [
+        {name: mean_score(scores) for name, scores in scores_by_method(round_).items()} for round_ in rounds
+    ]
+
+
+def _extents(rows: Sequence[Mapping[str, Score]]) -> dict[str, dict[str, dict[str, float]]]:
+    """Method -> heading error -> its extent over `rows`."""
+    return {
+        name: {key: extent([getattr(score, key) for score in scores]) for key in _ERRORS}
+        for name, scores in scores_by_method(rows).items()
+    }
+
+
+def _noises_document(rows: Sequence[Mapping[str, Score]]) -> dict[str, Any]:
+    return {"other_noises": {"count": len(rows), "methods": _extents(rows)}} if rows else {}
 
 
 def _distance(result: Result) -> float:
@@ -95,8 +123,8 @@ def run_report(name: str, results: Sequence[Result]) -> list[RenderableType]:
             parts.append(Text(_CHOSEN_UNITS, style="dim"))
     if name in IHDE_TABLE_2:
         parts.append(ihde_table(name, results))
-    others = others_table(results)
-    return [*parts, *([others] if others else []), position_table(results)]
+    further = [table for table in (noises_table(results), others_table(results)) if table]
+    return [*parts, *further, position_table(results)]
 
 
 def path_line(path: Path) -> str:
@@ -178,6 +206,24 @@ def ihde_table(name: str, results: Sequence[Result]) -> Group:
         )
     title = f"Return error P_err (% of the distance), {len(results)} walks; Deng et al. (2018), Table 2"
     return titled(title, table)
+
+
+def noises_table(results: Sequence[Result]) -> Group | None:
+    """What other noises make of the same walks and units, and of their mean; None when there are none."""
+    means = _mean_by_noise(results)
+    if not means:
+        return None
+    table = new_table(
+        "walk", "", "final\nmedian", "smallest\nto largest", "average\nmedian", "smallest\nto largest", left=2
+    )
+    walks = [(str(result.task.number + 1), result.noises) for result in results]
+    for walk, rows in [*walks, ("mean", means)]:
+        for name, errors in _extents(rows).items():
+            cells = []
+            for found in errors.values():
+                cells += [f"{found['median']:.1f}", f"{found['smallest']:.1f} to {found['largest']:.1f}"]
+            table.add_row(walk, name, *cells, style="bold" if walk == "mean" else None)
+    return titled(f"The same walks and units heard through {len(means)} other noises each (deg)", table)
 
 
 def others_table(results: Sequence[Result]) -> Group | None:

@@ -27,6 +27,7 @@ from footfall.simulate.walk import Walk
 
 DEFAULT_METHODS = ("pdr", "hdr")
 OTHER_UNITS_FROM = 1000  # seeds of the units that are reported beside the scenario's own
+OTHER_NOISES_FROM = 5000  # seeds of the noises that the walks' own units are heard through once more
 
 _done: Any = None  # in a worker: two numbers a task, what `perform` reports
 
@@ -38,19 +39,23 @@ class Task:
     Attributes
     ----------
     scenario : what to walk; number : of the walk in it, from 0
-    walk_seed, unit_seed : of the walk (body, gait, wander) and of the IMU unit with its noise
+    walk_seed : of the walk (body, gait, wander)
+    unit_seed, noise_seed : of the IMU unit, and of what differs from recording to recording of one unit
     imu : stock name or data sheet
     methods : names
-    others : seeds of further units of the same sheet, scored on the same walk
+    others : seeds of further units of the same sheet, each with the noise of its own seed, on the same walk
+    noises : seeds of further noises of this unit, scored on the same walk
     """
 
     scenario: Scenario
     number: int
     walk_seed: int
     unit_seed: int
+    noise_seed: int
     imu: str
     methods: tuple[str, ...]
     others: tuple[int, ...] = ()
+    noises: tuple[int, ...] = ()
     use_cache: bool = True
 
 
@@ -61,7 +66,7 @@ class Result:
     Attributes
     ----------
     scores : method -> score; tracks : method -> track
-    others : one method -> score mapping for each further unit
+    others, noises : one method -> score mapping for each further unit, and for each further noise
     """
 
     task: Task
@@ -71,6 +76,7 @@ class Result:
     tracks: Mapping[str, Track]
     scores: Mapping[str, Score]
     others: tuple[Mapping[str, Score], ...]
+    noises: tuple[Mapping[str, Score], ...] = ()
 
 
 def start_pose(walk: Walk, bias_s: float = BIAS_TIME) -> StartPose:
@@ -83,7 +89,8 @@ def perform(task: Task, on_progress: Callable[[float, int], None] | None = None)
 
     Parameters
     ----------
-    on_progress : called now and then with the metres walked and which further unit is being scored (or 0)
+    on_progress : called now and then with the metres walked and which further recording is being scored (or
+        0): those of `task.others` first, then those of `task.noises`
 
     Raises
     ------
@@ -97,18 +104,22 @@ def perform(task: Task, on_progress: Callable[[float, int], None] | None = None)
     spec = load_spec(task.imu)
     start = start_pose(walk)
 
+    air = scenario.temperature_of(task.number)
     recording, budget = record_with_budget(
-        walk, draw_unit(spec, task.unit_seed), seed=task.unit_seed, temperature=scenario.temperature
+        walk, draw_unit(spec, task.unit_seed), seed=task.noise_seed, temperature=air
     )
     made = tracks(Reckoning(recording, start), task.methods)
-    others = []
-    for count, seed in enumerate(task.others, start=1):
+
+    seeds = [*((unit, unit) for unit in task.others), *((task.unit_seed, noise) for noise in task.noises)]
+    further = []
+    for count, (unit, noise) in enumerate(seeds, start=1):
         report(length, count)
-        other = record(walk, draw_unit(spec, seed), seed=seed, temperature=scenario.temperature)
+        other = record(walk, draw_unit(spec, unit), seed=noise, temperature=air)
         found = tracks(Reckoning(other, start), task.methods)
-        others.append({name: score(track, walk) for name, track in found.items()})
+        further.append({name: score(track, walk) for name, track in found.items()})
+    others, noises = further[: len(task.others)], further[len(task.others) :]
     scores = {name: score(track, walk) for name, track in made.items()}
-    return Result(task, walk, recording, budget, made, scores, tuple(others))
+    return Result(task, walk, recording, budget, made, scores, tuple(others), tuple(noises))
 
 
 def tasks(
@@ -119,11 +130,13 @@ def tasks(
     imu: str | None = None,
     methods: Sequence[str] = DEFAULT_METHODS,
     other_units: int = 0,
+    noises: int = 0,
     use_cache: bool = True,
 ) -> list[Task]:
     """The walks of a run; arguments left out are the scenario's.
 
-    `other_units` further units (seeds from 1000) are shared out over the walks.
+    `other_units` further units (seeds from 1000) are shared out over the walks; each walk's own unit is heard
+    through `noises` further noises, which no other walk has (seeds from 5000).
 
     Raises
     ------
@@ -140,19 +153,23 @@ def tasks(
     count = scenario.walks if walks is None else walks
     base = scenario.seed if seed is None else seed
     own_sheet = imu is None or imu == scenario.imu
+    # Another sheet's units, or walks beyond the scenario's own, are simply drawn.
+    chosen = own_sheet and seed is None
+    units = [scenario.unit_seed(number) if chosen else base + number for number in range(count)]
     return [
         Task(
             scenario=scenario,
             number=number,
             walk_seed=base + number,
-            # Another sheet's units, or walks beyond the scenario's own, are simply drawn.
-            unit_seed=scenario.unit_seed(number) if own_sheet and seed is None else base + number,
+            unit_seed=unit,
+            noise_seed=unit,
             imu=imu or scenario.imu,
             methods=tuple(methods),
             others=tuple(range(OTHER_UNITS_FROM + number, OTHER_UNITS_FROM + other_units, count)),
+            noises=tuple(range(OTHER_NOISES_FROM + number, OTHER_NOISES_FROM + noises * count, count)),
             use_cache=use_cache,
         )
-        for number in range(count)
+        for number, unit in enumerate(units)
     ]
 
 

@@ -103,6 +103,14 @@ class TemperatureTable(Strict):
     outdoors_degC: float = Field(ge=-40, le=85)
 
 
+# Walks of different days may have a profile each.
+TemperatureEntry = Annotated[
+    Annotated[TemperatureTable, Tag("table")]
+    | Annotated[tuple[TemperatureTable, ...], Field(strict=False, min_length=1), Tag("list")],
+    Discriminator(lambda entry: "list" if isinstance(entry, list) else "table"),
+]
+
+
 class SensorTable(Strict):
     """What is on the shoe: `imu` is a stock name or a data sheet's path relative to the scenario's file."""
 
@@ -136,7 +144,7 @@ class ScenarioFile(Strict):
     stops: Annotated[tuple[StopTable, ...], Field(strict=False)] = ()
     paces: Annotated[tuple[PaceTable, ...], Field(strict=False)] = ()
     disturbance: DisturbanceTable | None = None
-    temperature: TemperatureTable
+    temperature: TemperatureEntry
     sensor: SensorTable
     seeds: SeedTable
     terrain: TerrainTable = TerrainTable()
@@ -158,7 +166,7 @@ class Scenario:
     variability : of the gait, 1 = that of people; action_noise : SD of the noise on the walker's actions
     wander, wander_time : m and s, slow lateral wander of the steering's aim; each used in turn
     push, push_every : N s and s, pushes at the trunk; 0: none
-    temperature : of the air around the sensor from the recording's start
+    temperatures : of the air around the sensor from the recording's start, used in turn from walk to walk
     imu : stock name or path of a data sheet
     mount : name of a mounting on the shoe
     rate_hz : of truth and recording
@@ -181,7 +189,7 @@ class Scenario:
     wander_time: tuple[float, ...]
     push: float
     push_every: float
-    temperature: TemperatureProfile
+    temperatures: tuple[TemperatureProfile, ...]
     imu: str
     mount: str
     rate_hz: float
@@ -198,6 +206,10 @@ class Scenario:
     def unit_seed(self, walk: int) -> int:
         """Seed of the sensor that is worn on a walk."""
         return self.units[walk % len(self.units)] if self.units else self.seed + walk
+
+    def temperature_of(self, walk: int) -> TemperatureProfile:
+        """What the sensor goes through on walk number `walk` (from 0)."""
+        return self.temperatures[walk % len(self.temperatures)]
 
     def plan(self, walk: int) -> Plan:
         """What the simulator needs for walk number `walk` (from 0)."""
@@ -274,9 +286,7 @@ def _scenario(file: File, content: ScenarioFile) -> Scenario:
         wander_time=gait.wander_time_s,
         push=content.disturbance.push_Ns if content.disturbance else 0.0,
         push_every=content.disturbance.every_s if content.disturbance else Plan.push_every,
-        temperature=TemperatureProfile.step(
-            content.temperature.indoors_degC, content.temperature.outdoors_degC
-        ),
+        temperatures=_temperatures(content.temperature),
         imu=imu,
         mount=sensor.mount,
         rate_hz=sensor.rate_hz,
@@ -310,6 +320,11 @@ def _paces(tables: tuple[PaceTable, ...], length: float) -> tuple[Pace, ...]:
                 f"{before:g} m and before the path's end at {length:g} m"
             )
     return tuple(Pace(table.at_m, table.m_s) for table in tables)
+
+
+def _temperatures(entry: TemperatureTable | tuple[TemperatureTable, ...]) -> tuple[TemperatureProfile, ...]:
+    tables = entry if isinstance(entry, tuple) else (entry,)
+    return tuple(TemperatureProfile.step(table.indoors_degC, table.outdoors_degC) for table in tables)
 
 
 def _subject(i: int, entry: str | SubjectTable) -> Subject:

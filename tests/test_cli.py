@@ -100,6 +100,21 @@ def test_a_recording_is_its_units(cli, here):
     assert not np.array_equal(other.gyro, first.gyro)
 
 
+def test_another_noise_is_another_recording_of_the_same_unit(cli, here):
+    """The constants of the unit stay: with its noises switched off there is no difference."""
+    quiet = " ".join(f"--without {name}" for name in ("turn_on", "flicker", "rate_random_walk", "white"))
+    for name, options in (("own", ""), ("same", "--noise-seed 7"), ("other", "--noise-seed 8")):
+        assert cli(f"record walk.parquet --unit-seed 7 {options} -o {name}.parquet")[0] == 0
+        assert cli(f"record walk.parquet --unit-seed 7 {options} {quiet} -o {name}-quiet.parquet")[0] == 0
+    own, same, other = (read_recording(f"{name}.parquet") for name in ("own", "same", "other"))
+    np.testing.assert_array_equal(same.gyro, own.gyro)
+    assert not np.array_equal(other.gyro, own.gyro)
+    assert [(made.meta["unit_seed"], made.meta["noise_seed"]) for made in (own, other)] == [(7, 7), (7, 8)]
+    still, elsewhere = (read_recording(f"{name}-quiet.parquet") for name in ("own", "other"))
+    np.testing.assert_array_equal(elsewhere.gyro, still.gyro)
+    assert not np.array_equal(still.gyro, read_walk("walk.parquet").gyro)
+
+
 def test_without_all_effects_a_recording_is_the_truth(cli, here):
     without = " ".join(f"--without {effect}" for effect in EFFECTS)
     assert cli(f"record walk.parquet {without} -o rec.parquet")[0] == 0

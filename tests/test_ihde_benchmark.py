@@ -43,7 +43,8 @@ def test_its_ways_are_the_methods_of_those_names(scripts, short_walk, name):
         "hde-paper": bench.Way(bench.HdeParams(), FilterSettings.paper()),
     }[name]
     job = bench.Job(scenario, 3, (way,))
-    recording = record(short_walk, draw_unit(load_spec("nimu"), 3), seed=3, temperature=scenario.temperature)
+    air = scenario.temperature_of(0)
+    recording = record(short_walk, draw_unit(load_spec("nimu"), 3), seed=3, temperature=air)
     expected = score(track(recording, name, start_pose(short_walk)), short_walk)
     assert score(way.track(job.reckoning(short_walk)), short_walk) == expected
 

@@ -12,10 +12,12 @@ from rich.console import Console
 
 from footfall.scenarios import figures
 from footfall.scenarios.paper import HDR_TABLE_2, HDR_TABLE_2_MEAN
-from footfall.scenarios.report import as_json, paper_table, path_line, run_report, spread
+from footfall.scenarios.report import as_json, extent, paper_table, path_line, run_report, spread
 from footfall.scenarios.run import perform, tasks
 from footfall.scenarios.scenario import load_scenario
 from footfall.scenarios.score import Score, mean_score
+
+NOISY = ((1.0, 9.0, 2.0), (41.0, 29.0, 20.0), (7.0, 7.0, 7.0))  # deg, errors of a walk by further noise
 
 
 def printed(*parts, width=80):
@@ -43,7 +45,9 @@ def several(walked, walks, methods=("pdr", "hdr"), factor=1.0):
             for i, name in enumerate(methods)
         }
         task = replace(walked.task, number=number, unit_seed=1000 + number)
-        results.append(replace(walked, task=task, tracks=tracks, scores=scores, others=(scores,)))
+        noises = tuple(dict.fromkeys(methods, Score(*([factor * at] * 6))) for at in NOISY[number % 3])
+        given = {"scores": scores, "others": (scores,), "noises": noises}
+        results.append(replace(walked, task=task, tracks=tracks, **given))
     return results
 
 
@@ -90,6 +94,32 @@ def test_a_flawless_method_breaks_no_table(walked):
     results = several(walked, 2, factor=0.0)
     assert "nan" not in printed(*run_report("short", results))
     json.dumps(as_json("short", results), allow_nan=False)
+
+
+def test_other_noises_are_told_by_walk_and_of_the_mean(walked):
+    """Median and extent over the noises; of the mean over the walks, not the mean of medians."""
+    results = several(walked, 3)
+    text = printed(*run_report("short", results))
+    assert "through 3 other noises each" in text
+    rows = [line.split() for line in text[text.index("3 other noises") :].splitlines()]
+    found = {(row[0], row[1]): row[2:] for row in rows if row[1:2] in (["pdr"], ["hdr"])}
+    for walk, (median, low, high) in {
+        "1": (2.0, 1.0, 9.0),
+        "2": (29.0, 20.0, 41.0),
+        "3": (7.0, 7.0, 7.0),
+        "mean": (15.0, 9.7, 16.3),  # of 49/3, 45/3 and 29/3; the medians' mean is 12.7
+    }.items():
+        expected = [f"{median}", f"{low}", "to", f"{high}"] * 2
+        assert found[walk, "pdr"] == found[walk, "hdr"] == expected
+    document = json.loads(json.dumps(as_json("short", results), allow_nan=False))
+    key = "heading_error_final_deg"
+    assert document["walks"][1]["other_noises"]["count"] == document["other_noises"]["count"] == 3
+    assert document["walks"][1]["other_noises"]["methods"]["hdr"][key] == extent([20.0, 29.0, 41.0])
+    assert document["other_noises"]["methods"]["hdr"][key] == extent([49 / 3, 45 / 3, 29 / 3])
+    assert document["walks"][1]["noise"] == results[1].task.noise_seed
+    silent = [replace(result, noises=()) for result in results]
+    assert "other noises" not in printed(*run_report("short", silent))
+    assert "other_noises" not in json.dumps(as_json("short", silent))
 
 
 def test_the_papers_table_is_printed_for_its_own_walk_alone(walked):

@@ -10,11 +10,21 @@ from commands import SCORES, content, one_document
 from PIL import Image
 
 from footfall.errors import InputError
+from footfall.hdr import methods
+from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
 from footfall.recording import read_recording
 from footfall.scenarios.results import results_folder, write_results
-from footfall.scenarios.run import OTHER_UNITS_FROM, perform, perform_all, tasks
+from footfall.scenarios.run import (
+    OTHER_NOISES_FROM,
+    OTHER_UNITS_FROM,
+    perform,
+    perform_all,
+    start_pose,
+    tasks,
+)
 from footfall.scenarios.scenario import load_scenario
 from footfall.scenarios.score import score
+from footfall.simulate.record import record
 from footfall.simulate.walk import read_walk
 from footfall.tables import read_table
 
@@ -29,9 +39,9 @@ def files_of(walk, *methods):
 
 @pytest.fixture(scope="module")
 def done(workshop):
-    """One walk of the short scenario, all methods, two further units."""
+    """One walk of the short scenario, all methods, two further units and three further noises."""
     scenario = load_scenario(workshop / "short.toml")
-    (task,) = tasks(scenario, walks=1, methods=("pdr", "hdr", "hdr-basic"), other_units=2)
+    (task,) = tasks(scenario, walks=1, methods=("pdr", "hdr", "hdr-basic"), other_units=2, noises=3)
     return perform(task)
 
 
@@ -58,6 +68,16 @@ def test_every_other_unit_is_scored_once(workshop, walks, units):
     assert max(len(task.others) for task in todo) - min(len(task.others) for task in todo) <= 1
 
 
+def test_one_unit_has_one_noise_unless_asked_and_every_further_noise_is_of_one_walk(workshop):
+    scenario = load_scenario(workshop / "short.toml")
+    todo = tasks(replace(scenario, units=(70, 90)), walks=3, noises=4)
+    assert [task.noise_seed for task in todo] == [task.unit_seed for task in todo] == [70, 90, 70]
+    seeds = [seed for task in todo for seed in task.noises]
+    assert [len(task.noises) for task in todo] == [4, 4, 4]
+    assert sorted(seeds) == list(range(OTHER_NOISES_FROM, OTHER_NOISES_FROM + 12))
+    assert [task.noises for task in tasks(scenario)] == [(), ()]
+
+
 # What is computed
 
 
@@ -70,6 +90,32 @@ def test_the_scores_are_those_of_the_tracks_against_the_walk(done):
     assert done.others[0]["pdr"] != done.others[1]["pdr"]
 
 
+def test_further_units_and_noises_are_what_their_recordings_give(done):
+    """A further unit in its own noise; the walk's own unit in further noise; each in the walk's cold."""
+    task, cold = done.task, done.task.scenario.temperature_of(done.task.number)
+    spec = load_spec(task.imu)
+    pairs = [*((unit, unit) for unit in task.others), *((task.unit_seed, noise) for noise in task.noises)]
+    assert len(done.noises) == 3
+    for (unit, noise), found in zip(pairs, [*done.others, *done.noises], strict=True):
+        recording = record(done.walk, draw_unit(spec, unit), seed=noise, temperature=cold)
+        assert found["hdr"] == score(methods.track(recording, "hdr", start_pose(done.walk)), done.walk)
+    assert len({found["pdr"].heading_error_final_deg for found in (*done.noises, done.scores)}) == 4
+
+
+def test_each_walk_is_recorded_in_its_own_cold(workshop):
+    days = (TemperatureProfile.step(20.0, 20.0), TemperatureProfile.step(20.0, -30.0))
+    scenario = replace(load_scenario(workshop / "short.toml"), temperatures=days)
+    first, second = (perform(task) for task in tasks(scenario, methods=("pdr",), other_units=2, noises=1))
+    assert [done.recording.meta["temperature"]["ambient"] for done in (first, second)] == [(20.0,), (-30.0,)]
+    assert np.ptp(first.recording.temperature) == 0
+    assert second.recording.temperature[-1] < 19
+    # The same unit in the same noise of the same walk is turned otherwise where it is warm.
+    warm = replace(second.task, scenario=replace(scenario, temperatures=days[:1]))
+    again = perform(warm)
+    for name in ("scores", "others", "noises"):
+        assert getattr(again, name) != getattr(second, name)
+
+
 def test_the_drift_budget_explains_the_uncorrected_heading(done):
     """Its causes sum up to the drift, which integrates to PDR's heading error within half a degree."""
     np.testing.assert_allclose(sum(done.budget.causes.values()), done.budget.total, atol=1e-12)
@@ -79,13 +125,13 @@ def test_the_drift_budget_explains_the_uncorrected_heading(done):
 
 def test_progress_runs_to_the_end_of_the_path_and_through_the_units(workshop):
     scenario = load_scenario(workshop / "short.toml")
-    (task,) = tasks(scenario, walks=1, other_units=2, use_cache=False)
+    (task,) = tasks(scenario, walks=1, other_units=2, noises=1, use_cache=False)
     said = []
     perform(task, lambda metres, unit: said.append((metres, unit)))
     metres = [at for at, _ in said]
     assert metres == sorted(metres)
     assert metres[-1] == scenario.path.route.length
-    assert [unit for _, unit in said if unit] == [1, 2]
+    assert [unit for _, unit in said if unit] == [1, 2, 3]
     assert sum(unit == 0 for _, unit in said) > 3
 
 
@@ -115,7 +161,7 @@ def test_a_workers_mistake_is_the_callers(workshop, tmp_path):
 
 
 def test_one_walk_in_the_folder_and_on_the_terminal(cli, here):
-    code, out, err = cli("run short.toml --walks 1 --units 2 --out new/deep")
+    code, out, err = cli("run short.toml --walks 1 --units 2 --noises 3 --out new/deep")
     assert code == 0
     assert err == "Scores, walks, tracks and figures are in new/deep\n"
     assert max(map(len, out.splitlines())) <= 80
@@ -130,6 +176,8 @@ def test_one_walk_in_the_folder_and_on_the_terminal(cli, here):
         assert scores["mean"][name] == pytest.approx(errors)
     assert scores["other_units"]["count"] == 2
     assert "2 other units" in out
+    assert scores["other_noises"]["count"] == row["other_noises"]["count"] == 3
+    assert "3 other noises" in out
     for figure in FIGURES:
         with Image.open(folder / figure) as image:
             assert image.width > 600
@@ -138,7 +186,7 @@ def test_one_walk_in_the_folder_and_on_the_terminal(cli, here):
 
 def test_the_files_are_what_the_commands_make(cli, here):
     """The walk, recording and tracks of a run are those of walk, record and track with the same seeds."""
-    assert cli("run short.toml --walks 1 --units 0 --out out")[0] == 0
+    assert cli("run short.toml --walks 1 --noises 0 --units 0 --out out")[0] == 0
     assert cli("record walk.parquet --unit-seed 3 -o rec.parquet")[0] == 0
     walk, theirs = read_walk("out/walk-1.parquet"), read_walk("walk.parquet")
     np.testing.assert_array_equal(walk.gyro, theirs.gyro)
@@ -159,16 +207,18 @@ def test_the_files_are_what_the_commands_make(cli, here):
 def test_the_same_seed_gives_the_same_scores_to_the_last_byte(cli, here):
     """Walked anew, walked anew again, and by way of the cache."""
     for folder, options in (("a", "--no-cache"), ("b", "--no-cache"), ("c", ""), ("c", "")):
-        assert cli(f"run short.toml --walks 1 --units 1 --seed 11 {options} --out {folder}")[0] == 0
+        assert (
+            cli(f"run short.toml --walks 1 --units 1 --noises 1 --seed 11 {options} --out {folder}")[0] == 0
+        )
     first = (here / "a" / "scores.json").read_bytes()
     for folder in "bc":
         assert (here / folder / "scores.json").read_bytes() == first
-    assert cli("run short.toml --walks 1 --units 1 --seed 12 --out e")[0] == 0
+    assert cli("run short.toml --walks 1 --noises 0 --units 1 --seed 12 --out e")[0] == 0
     assert json.loads((here / "e" / "scores.json").read_text())["mean"] != json.loads(first)["mean"]
 
 
 def test_the_json_on_standard_output_is_the_file(cli, here):
-    code, out, _ = cli("run short.toml --walks 1 --units 0 --imu perfect --methods pdr --json")
+    code, out, _ = cli("run short.toml --walks 1 --units 0 --noises 0 --imu perfect --methods pdr --json")
     assert code == 0
     document = one_document(out)
     assert document == json.loads((here / "out" / "short" / "scores.json").read_text())
@@ -186,10 +236,10 @@ def test_the_json_on_standard_output_is_the_file(cli, here):
 
 
 def test_a_later_run_leaves_nothing_of_an_earlier_one_and_all_of_its_users(cli, here):
-    assert cli("run short.toml --walks 2 --units 0 --out new")[0] == 0
+    assert cli("run short.toml --walks 2 --noises 0 --units 0 --out new")[0] == 0
     for name in ("notes.txt", "walk-1.mine.parquet", "walk-2.png"):
         (here / "new" / name).write_text("mine")
-    assert cli("run short.toml --walks 1 --units 0 --methods pdr --out new")[0] == 0
+    assert cli("run short.toml --walks 1 --noises 0 --units 0 --methods pdr --out new")[0] == 0
     left = files_of(1, "pdr") | FIGURES - {"filtered_rates.png", "controller.png"} | {"scores.json"}
     assert set(os.listdir(here / "new")) == left | {"notes.txt", "walk-1.mine.parquet", "walk-2.png"}
 
