@@ -103,7 +103,7 @@ def scored(units: Sequence[int], noises: Sequence[int], job: tuple[Scenario, int
     for u, unit in enumerate(units):
         for k, noise in enumerate(noises):
             drawn = draw_unit(spec, unit)
-            recording = record(walk, drawn, seed=noise, temperature=scenario.temperature)
+            recording = record(walk, drawn, seed=noise, temperature=scenario.temperature_of(number))
             footfalls = Reckoning(recording, start).footfalls
             error = compare(pdr_track(footfalls), walk).heading_error
             sets = [params for params in METHODS.values() if params is not None]

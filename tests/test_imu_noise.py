@@ -118,6 +118,12 @@ def test_the_turn_on_bias_scatters_from_recording_to_recording():
     assert low < np.sum((biases / 0.4) ** 2) < high
 
 
+def test_the_turn_on_bias_of_an_axis_says_nothing_of_another():
+    biases = np.array([noise(2, 0.005, seed, turn_on_sigma=0.4)[0] for seed in range(300)])
+    off = np.corrcoef(biases.T)[~np.eye(3, dtype=bool)]
+    assert np.abs(off).max() < 4 / math.sqrt(len(biases))
+
+
 def test_noises_of_three_axes_and_two_seeds_are_uncorrelated():
     for name in ("white", "flicker"):
         x = np.hstack([noise(20_000, 10.0, seed, **{name: 1.0}) for seed in (0, 1)])

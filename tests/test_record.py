@@ -11,11 +11,11 @@ from synthetic import synthetic_walk
 
 from footfall.errors import InputError
 from footfall.models.imu import EFFECTS, ImuSpec, ImuUnit, TemperatureProfile, TriadSpec, draw_unit, load_spec
-from footfall.recording import read_recording, write_recording
+from footfall.recording import Recording, read_recording, write_recording
 from footfall.simulate._budget_kernels import compose
-from footfall.simulate.budget import drift_budget, write_budget
+from footfall.simulate.budget import DriftBudget, drift_budget, write_budget
 from footfall.simulate.record import BIAS_TIME, record, record_with_budget
-from footfall.simulate.walk import Walk
+from footfall.simulate.walk import TrueFootfalls, Walk
 from footfall.tables import read_table
 
 COLD = TemperatureProfile.step(20.0, -5.0)
@@ -84,6 +84,23 @@ def test_without_a_word_on_the_temperature_it_is_20_degrees_all_along(walk, nimu
     assert reported[0] == pytest.approx(20.0, abs=0.018165 / 2)
 
 
+@pytest.mark.parametrize("sensor", ["gyro", "accel"])
+def test_temperature_errors_are_nought_at_the_sheets_reference_alone(walk, sensor):
+    """The vertex of the nIMU's parabola is at 25 degC: 5 K below and above are alike, 10 K four times."""
+    thermal = load_spec("nimu").thermal
+    spec = ImuSpec("x", **{sensor: TriadSpec(temperature2_sigma=1e-5)}, thermal=thermal)
+    unit, true = draw_unit(spec, 0), getattr(walk, sensor)
+
+    def off(temperature: float) -> np.ndarray:
+        steady = TemperatureProfile.steady(temperature)
+        return getattr(record(walk, unit, seed=0, temperature=steady), sensor) - true
+
+    assert not off(25.0).any()
+    np.testing.assert_allclose(off(20.0), 25 * np.tile(getattr(unit, sensor).temperature2, (len(true), 1)))
+    np.testing.assert_allclose(off(30.0), off(20.0))
+    np.testing.assert_allclose(off(15.0), 4 * off(20.0), rtol=1e-6)
+
+
 def test_a_recording_tells_its_origin(walk, nimu, tmp_path):
     write_recording(record(walk, nimu, seed=5, temperature=COLD, without=["white"]), tmp_path / "r.parquet")
     meta = read_recording(tmp_path / "r.parquet").meta
@@ -126,12 +143,9 @@ def test_budget_comes_with_the_same_recording(walk, nimu):
     assert recording.accel.tobytes() == plain.accel.tobytes()
 
 
-@pytest.mark.parametrize(("imu", "seed"), [("nimu", 0), ("nimu", 1), ("nimu", 2), ("mtig710", 3)])
-def test_causes_sum_to_what_the_recording_itself_shows(walk, imu, seed):
-    """The total is computed again from the recording alone, sample by sample, with scipy's rotations."""
-    recording, budget = record_with_budget(walk, draw_unit(load_spec(imu), seed), seed=seed, temperature=COLD)
-    assert tuple(budget.causes) == EFFECTS
-    still = round(BIAS_TIME / walk.interval)
+def assert_explained(walk: Walk, recording: Recording, budget: DriftBudget) -> None:
+    """The drift is what the recording alone shows, sample by sample, by scipy's rotations."""
+    still = round(25 / walk.interval)  # T_bias of the HDR paper
     rate = recording.gyro - recording.gyro[:still].mean(axis=0)
     edges = np.rint(walk.footfalls.t / walk.interval).astype(int)
     for i, (a, b) in enumerate(pairwise(edges)):
@@ -143,6 +157,34 @@ def test_causes_sum_to_what_the_recording_itself_shows(walk, imu, seed):
         causes = sum(values[i] for values in budget.causes.values())
         assert abs(causes - drift) < 1e-12
         assert abs(causes - budget.total[i]) < 1e-15
+
+
+@pytest.mark.parametrize(("imu", "seed"), [("nimu", 0), ("nimu", 1), ("nimu", 2), ("mtig710", 3)])
+def test_causes_sum_to_what_the_recording_itself_shows(walk, imu, seed):
+    recording, budget = record_with_budget(walk, draw_unit(load_spec(imu), seed), seed=seed, temperature=COLD)
+    assert tuple(budget.causes) == EFFECTS
+    assert_explained(walk, recording, budget)
+
+
+def test_strides_of_different_length_have_each_their_own_drift(walk, nimu):
+    """Footfalls left out: strides of one, two, three and six times the length, for each its own time."""
+    kept = np.array([0, 1, 3, 4, 7, 13, 14])
+    falls = walk.footfalls
+    uneven = dataclasses.replace(
+        walk, footfalls=TrueFootfalls(falls.t[kept], falls.position[kept], falls.heading[kept])
+    )
+    recording, budget = record_with_budget(uneven, nimu, seed=2, temperature=COLD)
+    np.testing.assert_allclose(budget.interval, np.diff(kept) * 1.1, atol=0.006)
+    assert_explained(uneven, recording, budget)
+
+
+def test_the_static_bias_is_that_of_25_seconds(walk):
+    """A bias that begins after 24 s: one of 25 seconds is averaged in and taken off, of 20 none."""
+    unit = gyro_unit(temperature_sigma=1e-6)
+    warm = TemperatureProfile(25.0, (24.0, 24.0 + 1e-6), (25.0, 35.0))
+    _, found = record_with_budget(walk, unit, seed=0, temperature=warm)
+    _, whole = record_with_budget(walk, unit, seed=0, temperature=warm, bias_time=20.0)
+    np.testing.assert_allclose(found.total / whole.total, 1 - 1 / 25, rtol=1e-3)
 
 
 def test_non_linearity_has_its_share_of_the_budget(walk):

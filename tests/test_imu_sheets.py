@@ -1,0 +1,114 @@
+"""The stock data sheets: every value that was published, converted by hand, against what is loaded."""
+
+import math
+import tomllib
+
+import pytest
+
+from footfall.models.imu import load_spec
+from footfall.models.imu.spec import SHEETS
+
+# Key of the sheet -> (its published value, its attribute, its value in SI). By hand, 1 deg = 1.745329e-2 rad,
+# 1 g = 9.80665 m/s2, 1 h = 3600 s: 4.4 deg/rt-h are 4.4/60 deg/s/rt-Hz, 30 deg/h/rt-h 30/3600/60 deg/s/rt-s.
+NIMU = {
+    "gyro": {
+        "range_deg_s": (1200.0, "range", 20.94395),
+        "bandwidth_hz": (50.0, "bandwidth", 50.0),
+        "resolution_deg_s": (0.054932, "resolution", 9.587443e-4),
+        "angle_random_walk_deg_rt_h": (4.4, "white", 1.279908e-3),
+        "flicker_deg_h": (80.0, "flicker", 3.878509e-4),
+        "rate_random_walk_deg_h_rt_h": (30.0, "random_walk", 2.424068e-6),
+        "turn_on_sigma_deg_s": (0.5, "turn_on_sigma", 8.726646e-3),
+        "scale_sigma": (0.003, "scale_sigma", 0.003),
+        "misalignment_sigma_deg": (0.17, "misalignment_sigma", 2.967060e-3),
+        "g_sensitivity_sigma_deg_s_g": (0.15, "g_sigma", 2.669611e-4),
+        "g2_sigma_deg_s_g2": (5e-4, "g2_sigma", 9.074151e-8),
+        "temperature_sigma_deg_s_k": (0.011, "temperature_sigma", 1.919862e-4),
+        "temperature2_sigma_deg_s_k2": (0.0, "temperature2_sigma", 0.0),
+    },
+    "accel": {
+        "range_g": (15.0, "range", 147.0998),
+        "bandwidth_hz": (50.0, "bandwidth", 50.0),
+        "resolution_mg": (0.45776, "resolution", 4.489092e-3),
+        "noise_density_ug_rt_hz": (80.0, "white", 7.845320e-4),
+        "flicker_ug": (100.0, "flicker", 9.806650e-4),
+        "random_walk_ug_rt_h": (100.0, "random_walk", 1.634442e-5),
+        "turn_on_sigma_mg": (10.0, "turn_on_sigma", 9.806650e-2),
+        "scale_sigma": (0.003, "scale_sigma", 0.003),
+        "misalignment_sigma_deg": (0.17, "misalignment_sigma", 2.967060e-3),
+        "g2_sigma_ug_g2": (100.0, "g2_sigma", 1.019716e-5),
+        "temperature_sigma_mg_k": (0.1, "temperature_sigma", 9.806650e-4),
+        "temperature2_sigma_mg_k2": (0.0, "temperature2_sigma", 0.0),
+    },
+    "thermal": {
+        "time_constant_s": (600.0, "time_constant", 600.0),
+        "reference_degC": (25.0, "reference", 25.0),
+        "resolution_degC": (0.018165, "resolution", 0.018165),
+        "reported": (True, "reported", True),
+    },
+}
+MTIG710 = {
+    "gyro": {
+        "range_deg_s": (1000.0, "range", 17.45329),
+        "bandwidth_hz": (415.0, "bandwidth", 415.0),
+        "angle_random_walk_deg_rt_h": (0.6, "white", 1.745329e-4),  # .01 deg/s/rt-Hz
+        "flicker_deg_h": (15.06, "flicker", 7.301294e-5),  # a floor of 10 deg/h: 10 / .664
+        "turn_on_sigma_deg_s": (0.07, "turn_on_sigma", 1.221730e-3),
+        "scale_sigma": (0.0005, "scale_sigma", 0.0005),
+        "misalignment_sigma_deg": (0.03, "misalignment_sigma", 5.235988e-4),
+        "g_sensitivity_sigma_deg_s_g": (0.003, "g_sigma", 5.339222e-6),
+    },
+    "accel": {
+        "range_g": (15.0, "range", 147.0998),
+        "bandwidth_hz": (375.0, "bandwidth", 375.0),
+        "noise_density_ug_rt_hz": (80.0, "white", 7.845320e-4),
+        "flicker_ug": (60.2, "flicker", 5.903603e-4),  # a floor of 40 ug: 40 / .664
+        "turn_on_sigma_mg": (1.0, "turn_on_sigma", 9.806650e-3),
+        "scale_sigma": (0.0005, "scale_sigma", 0.0005),
+        "misalignment_sigma_deg": (0.03, "misalignment_sigma", 5.235988e-4),
+    },
+}
+SHEETS_BY_HAND = {"nimu": NIMU, "mtig710": MTIG710}
+
+
+@pytest.mark.parametrize("name", SHEETS_BY_HAND)
+def test_every_key_of_a_sheet_says_what_was_published(name):
+    sheet = tomllib.loads((SHEETS / f"{name}.toml").read_text())
+    published = {
+        part: {key: value for key, (value, _, _) in keys.items()}
+        for part, keys in SHEETS_BY_HAND[name].items()
+    }
+    assert {part: sheet[part] for part in sheet if part != "name"} == published
+
+
+@pytest.mark.parametrize("name", SHEETS_BY_HAND)
+def test_every_key_of_a_sheet_arrives_in_si(name):
+    spec = load_spec(name)
+    for part, keys in SHEETS_BY_HAND[name].items():
+        loaded = getattr(spec, part)
+        for key, (_, attribute, si) in keys.items():
+            assert getattr(loaded, attribute) == pytest.approx(si, rel=2e-6), (part, key)
+        for attribute in {*vars(loaded)} - {attribute for _, attribute, _ in keys.values()}:
+            assert getattr(loaded, attribute) == 0, (part, attribute)
+
+
+def test_what_the_second_paper_calls_bias_stability_is_the_allan_floor():
+    """Deng et al. (2018), Table 1: 10 deg/h and 40 ug; a coefficient B has a floor of .664 B."""
+    spec = load_spec("mtig710")
+    assert math.degrees(0.664 * spec.gyro.flicker) * 3600 == pytest.approx(10, rel=1e-3)
+    assert 0.664 * spec.accel.flicker / 9.80665e-6 == pytest.approx(40, rel=1e-3)
+    assert spec.gyro.white == pytest.approx(math.radians(0.01))  # the sheet's deg/s/rt-Hz
+
+
+def test_a_sheet_without_a_thermal_table_has_its_zero_at_25_degrees(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text('name = "mine"\n[gyro]\ntemperature_sigma_deg_s_k = 0.01\n[accel]\n')
+    assert load_spec(path).thermal.reference == 25
+
+
+def test_quadratic_temperature_errors_which_no_stock_sheet_has_arrive_in_si(tmp_path):
+    path = tmp_path / "mine.toml"
+    keys = "[gyro]\ntemperature2_sigma_deg_s_k2 = 1.0\n[accel]\ntemperature2_sigma_mg_k2 = 1.0\n"
+    path.write_text(f'name = "mine"\n{keys}')
+    assert load_spec(path).gyro.temperature2_sigma == pytest.approx(1.745329e-2, rel=2e-6)
+    assert load_spec(path).accel.temperature2_sigma == pytest.approx(9.80665e-3, rel=2e-6)
