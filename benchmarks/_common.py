@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, fields, replace
+from itertools import product
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -32,6 +33,8 @@ from footfall.simulate.route import Route
 
 J = TypeVar("J")
 R = TypeVar("R")
+
+NOISE_STEP = 100_000  # between the seeds of one unit's noises: more than there are units
 
 # A file is as wide as the widest table.
 out = Console(soft_wrap=True, width=None if sys.stdout.isatty() else 120)
@@ -91,21 +94,27 @@ def within_paper(errors: np.ndarray) -> np.ndarray:
 class Wearing:
     """One walk of a scenario and the seeds of the units to wear on it.
 
-    `number` of the walk in the scenario decides its subject, `seed` all else.
+    `number` of the walk in the scenario decides its subject and its weather, `seed` all else. Each unit is
+    heard through its own noise and `noises` more.
     """
 
     scenario: Scenario
     number: int
     seed: int
     units: tuple[int, ...]
+    noises: int = 0
 
 
 @dataclass(frozen=True)
 class Case:
-    """One unit on one walk, dead-reckoned, whose heading is off by `error`: (n,) rad, estimate - truth."""
+    """One unit on one walk, dead-reckoned, whose heading is off by `error`: (n,) rad, estimate - truth.
+
+    `noise` counts the noises that the unit was heard through; 0 is its own.
+    """
 
     walk: int
     unit: int
+    noise: int
     footfalls: Footfalls
     error: np.ndarray
 
@@ -131,16 +140,17 @@ def _dead_reckon(wearing: Wearing) -> list[Case] | str:
     except InputError as error:
         return str(error)
     spec, start, cases = load_spec(scenario.imu), start_pose(walk), []
-    for unit in wearing.units:
-        recording = record(walk, draw_unit(spec, unit), seed=unit, temperature=scenario.temperature)
+    air = scenario.temperature_of(wearing.number)
+    for unit, noise in product(wearing.units, range(1 + wearing.noises)):
+        recording = record(walk, draw_unit(spec, unit), seed=unit + NOISE_STEP * noise, temperature=air)
         footfalls = Reckoning(recording, start).footfalls
         heading_error = compare(pdr_track(footfalls), walk).heading_error
-        cases.append(Case(wearing.seed, unit, footfalls, heading_error))
+        cases.append(Case(wearing.seed, unit, noise, footfalls, heading_error))
     return cases
 
 
 def dead_reckoned(todo: Iterable[Wearing], processes: int, label: str) -> list[Case]:
-    """Every unit on its walk, in the order of the units. Walks that came to no end are named and left out."""
+    """Every unit on its walk, by unit and noise. Walks that came to no end are named and left out."""
     jobs = [wearing for wearing in todo if wearing.units]
     cases: list[Case] = []
     for wearing, result in zip(jobs, run_all(_dead_reckon, jobs, processes, label), strict=True):
@@ -148,14 +158,12 @@ def dead_reckoned(todo: Iterable[Wearing], processes: int, label: str) -> list[C
             err.print(f"[red]left out, with {len(wearing.units)} units:[/red] {result}")
         else:
             cases += result
-    return sorted(cases, key=lambda case: case.unit)
+    return sorted(cases, key=lambda case: (case.unit, case.noise))
 
 
-def shared_out(scenario: Scenario, walks: int, first_walk: int, units: Sequence[int]) -> list[Wearing]:
+def shared_out(
+    scenario: Scenario, walks: int, first_walk: int, units: Sequence[int], noises: int = 0
+) -> list[Wearing]:
     """Walks with the seeds `first_walk`.., unit k on walk k mod `walks`."""
-    return [
-        Wearing(
-            scenario, number, first_walk + number, tuple(unit for unit in units if unit % walks == number)
-        )
-        for number in range(walks)
-    ]
+    worn = [tuple(unit for unit in units if unit % walks == number) for number in range(walks)]
+    return [Wearing(scenario, number, first_walk + number, worn[number], noises) for number in range(walks)]

@@ -4,6 +4,7 @@ import importlib
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,16 +13,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from footfall.hdr import methods
 from footfall.hdr.hdr import HdrParams, headings
 from footfall.hdr.methods import Reckoning, hdr_track, pdr_track
-from footfall.models.imu import draw_unit, load_spec
+from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
 from footfall.scenarios.run import start_pose
 from footfall.scenarios.scenario import load_scenario
 from footfall.scenarios.score import compare, score
+from footfall.simulate.cache import cached_walk
 from footfall.simulate.journey import FallError
 from footfall.simulate.record import record
 from footfall.simulate.walk import TrueFootfalls
 
+COLD = TemperatureProfile.step(20.0, -5.0)
 FOLDER = Path(__file__).resolve().parents[1] / "benchmarks"
 
 SCENARIO = """
@@ -56,7 +60,16 @@ def scripts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> SimpleNamespace:
     """The benchmarks as modules, by name; walks are cached in a folder of their own."""
     monkeypatch.syspath_prepend(str(FOLDER))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    names = ("_common", "hdr_table2", "imu_truth", "robustness", "stock_units", "stops", "walker_speed")
+    names = (
+        "_common",
+        "_hdr_page",
+        "hdr_table2",
+        "imu_truth",
+        "robustness",
+        "stock_units",
+        "stops",
+        "walker_speed",
+    )
     return SimpleNamespace(**{name: importlib.import_module(name) for name in names})
 
 
@@ -92,7 +105,7 @@ def test_walker_speed_accounts_for_every_second(scripts, short: str, tmp_path: P
 def test_errors_of_a_batch_are_the_scores_of_its_tracks(scripts, short_walk) -> None:
     recording = record(short_walk, draw_unit(load_spec("nimu"), 3), seed=3)
     footfalls = Reckoning(recording, start_pose(short_walk)).footfalls
-    case = scripts._common.Case(1, 3, footfalls, compare(pdr_track(footfalls), short_walk).heading_error)
+    case = scripts._common.Case(1, 3, 0, footfalls, compare(pdr_track(footfalls), short_walk).heading_error)
     sets = [HdrParams(), HdrParams.from_degrees(i_c_deg_s=0.02, theta_w_deg_s=1.0)]
 
     def judged(track) -> list[float]:
@@ -107,14 +120,22 @@ def test_errors_of_a_batch_are_the_scores_of_its_tracks(scripts, short_walk) -> 
 def test_hdr_is_tuned_and_judged_on_different_walks_and_units(scripts, short: str, tmp_path: Path) -> None:
     out, figure = tmp_path / "out.json", tmp_path / "figure.png"
     few = ["--walks", "2", "--units", "4", "--tuning-walks", "1", "--tuning-units", "3", "--processes", "1"]
+    page = tmp_path / "page.md"
+    page.write_text("<!-- table hdr -->\n<!-- end -->\n<!-- table hdr noise -->\n<!-- end -->\n")
+    few += ["--noises", "2", "--mounts", "medial", "--page", str(page)]
     scripts.hdr_table2.main([short, *few, "--json", str(out), "--figure", str(figure)])
     document = json.loads(out.read_text())
     grid = np.array(document["tuning_average_deg"])
     assert grid.shape == (len(document["i_c_deg_s"]), len(document["theta_w_deg_s"]))
     groups = document["judged"]["short"]
-    assert groups["all units drawn"]["count"] == 4
-    assert groups["the scenario's own"]["count"] == 2
+    for group, units in (("all units drawn", 4), ("the scenario's own", 2)):
+        assert (groups[group]["units"], groups[group]["recordings"]) == (units, 3 * units)
+    moved = document["judged"]["short, medial"]["all units drawn"]["methods"]["uncorrected"]
+    found = groups["all units drawn"]["methods"]["uncorrected"]
+    assert moved != found
     assert figure.stat().st_size > 10_000
+    shown = f"{found['over_all']['average']['mean']:.1f} / {found['over_all']['final']['mean']:.1f}"
+    assert f"| 12 recordings of 4 units, all units drawn | uncorrected | {shown} |" in page.read_text()
 
     row, column = np.unravel_index(np.argmin(grid), grid.shape)
     theta_w = document["theta_w_deg_s"][column]
@@ -122,6 +143,36 @@ def test_hdr_is_tuned_and_judged_on_different_walks_and_units(scripts, short: st
         i_c_deg_s=document["i_c_deg_s"][row], theta_w_deg_s=np.inf if theta_w is None else theta_w
     )
     assert document["chosen"] == scripts.hdr_table2.name_of(best)
+
+
+def test_errors_are_summed_up_over_units_and_noises(scripts) -> None:
+    """Two noises of three units: over all six, from noise to noise, and how far one unit's lie apart."""
+    final = np.array([[10.0, 20.0, 60.0], [30.0, 20.0, 10.0]])
+    found = scripts._hdr_page.summary(np.stack([final, final / 10], axis=-1), np.ones((2, 3), bool))
+    assert found.over_all["final"]["mean"] == 25
+    assert found.over_all["average"]["median"] == 2
+    assert found.by_noise["final"]["mean"] == {"median": 25, "smallest": 20, "largest": 30}
+    assert found.by_noise["final"]["median"] == {"median": 20, "smallest": 20, "largest": 20}
+    assert found.unit["final"] == 20  # of 20, 0 and 50
+    some = scripts._hdr_page.summary(
+        np.stack([final, final], axis=-1), np.array([[1, 0, 0], [1, 1, 0]], dtype=bool)
+    )
+    assert some.over_all["final"]["mean"] == 20
+    assert some.by_noise["final"]["mean"] == {"median": 17.5, "smallest": 10, "largest": 25}
+    assert some.unit["final"] == 10  # of 20 and 0
+
+
+def test_each_unit_is_heard_through_its_own_noise_and_more(scripts, short: str) -> None:
+    scenario = load_scenario(short)
+    todo = scripts._common.shared_out(scenario, 2, scenario.seed, (7, 8), 2)
+    cases = scripts._common.dead_reckoned(todo, 1, "walking")
+    assert [(case.unit, case.noise) for case in cases] == [(7, 0), (7, 1), (7, 2), (8, 0), (8, 1), (8, 2)]
+    walk = cached_walk(replace(scenario.plan(1), seed=scenario.seed + 1))
+    for case in cases[:2]:
+        seed = 7 + scripts._common.NOISE_STEP * case.noise
+        recording = record(walk, draw_unit(load_spec("nimu"), 7), seed=seed, temperature=COLD)
+        expected = score(methods.track(recording, "pdr", start_pose(walk)), walk)
+        assert case.uncorrected_deg()[0] == pytest.approx(expected.heading_error_final_deg)
 
 
 @pytest.mark.parametrize("clash", [["--tuning-unit-seed", "1003"], ["--tuning-walk-seed", "2"]])

@@ -5,7 +5,7 @@ import tomllib
 
 import pytest
 
-from footfall.models.imu import load_spec
+from footfall.models.imu import ThermalSpec, load_spec
 from footfall.models.imu.spec import SHEETS
 
 # Key of the sheet -> (its published value, its attribute, its value in SI). By hand, 1 deg = 1.745329e-2 rad,
@@ -103,7 +103,7 @@ def test_what_the_second_paper_calls_bias_stability_is_the_allan_floor():
 def test_a_sheet_without_a_thermal_table_has_its_zero_at_25_degrees(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text('name = "mine"\n[gyro]\ntemperature_sigma_deg_s_k = 0.01\n[accel]\n')
-    assert load_spec(path).thermal.reference == 25
+    assert load_spec(path).thermal.reference == ThermalSpec().reference == 25
 
 
 def test_quadratic_temperature_errors_which_no_stock_sheet_has_arrive_in_si(tmp_path):
