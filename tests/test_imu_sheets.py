@@ -56,6 +56,7 @@ MTIG710 = {
         "turn_on_sigma_deg_s": (0.07, "turn_on_sigma", 1.221730e-3),
         "scale_sigma": (0.0005, "scale_sigma", 0.0005),
         "misalignment_sigma_deg": (0.03, "misalignment_sigma", 5.235988e-4),
+        "non_linearity_sigma_percent_fs": (0.01, "non_linearity_sigma", 1e-4),
         "g_sensitivity_sigma_deg_s_g": (0.003, "g_sigma", 5.339222e-6),
     },
     "accel": {
@@ -66,6 +67,7 @@ MTIG710 = {
         "turn_on_sigma_mg": (1.0, "turn_on_sigma", 9.806650e-3),
         "scale_sigma": (0.0005, "scale_sigma", 0.0005),
         "misalignment_sigma_deg": (0.03, "misalignment_sigma", 5.235988e-4),
+        "non_linearity_sigma_percent_fs": (0.03, "non_linearity_sigma", 3e-4),
     },
 }
 SHEETS_BY_HAND = {"nimu": NIMU, "mtig710": MTIG710}

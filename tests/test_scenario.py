@@ -279,7 +279,7 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
             r"sensor.rate_hz: rate = 300 Hz does not divide the physics rate",
         ),
         ("pace_m_s = 1.2", "pace_m_s = 1.2\nwander_m = 0.6", r"gait.wander_m = 0.6: .* equal to 0.5"),
-        ("pace_m_s = 1.2", 'pace_m_s = 1.2\nwander_m = "0.1"', r"gait.wander_m.0 = '0.1': .* valid number"),
+        ("pace_m_s = 1.2", 'pace_m_s = 1.2\nwander_m = "0.1"', r"gait.wander_m = '0.1': .* valid number"),
         ("pace_m_s = 1.2", "pace_m_s = 1.2\nwander_m = []", r"gait.wander_m: .* at least 1"),
         (
             "pace_m_s = 1.2",
