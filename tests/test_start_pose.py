@@ -10,8 +10,8 @@ from synthetic_foot import walk
 from footfall.hdr.filtered import filter_track
 from footfall.hdr.methods import METHODS, Reckoning, tracks
 from footfall.models.imu import draw_unit, load_spec
-from footfall.pdr.filtering import run_filter
-from footfall.pdr.ins import FilterSettings, frozen
+from footfall.pdr.filtering import align, run_filter, updates
+from footfall.pdr.ins import FilterSettings, InertialFilter, frozen
 from footfall.pdr.pdr import PdrParams, StartPose, dead_reckon, detect
 from footfall.pdr.stream import dead_reckon_blocks
 from footfall.recording import Recording
@@ -86,6 +86,20 @@ def test_the_heading_is_as_uncertain_at_the_first_footfall_as_the_gyro_has_made_
         for smooth in (False, True):
             first = run_filter(recording, settings, start=start, smooth=smooth).heading_sd[0]
             assert first == pytest.approx(np.hypot(sd, noise), rel=0.15)  # and by the tilt
+
+
+def test_the_place_is_as_uncertain_at_the_first_footfall_as_the_way_to_it_leaves_it():
+    truth, start = pivoted(10 * DEG)
+    recording = truth.recording()
+    found = detect(recording, PdrParams())
+    now = InertialFilter(FilterSettings(), align(recording, found.rest, start))
+    assert not now.covariance[:3, :3].any()
+    rows = slice(found.rest.last + 1, found.stances.resets[found.stances.footfalls[0]] + 1)
+    update = updates(recording.t, found, None)[rows]
+    now.advance(recording.t[rows], recording.gyro[rows], recording.accel[rows], update)
+    sd = np.sqrt(np.diag(now.covariance)[:3])
+    assert (sd < 0.01).all()
+    assert (np.abs(now.position - truth.position[truth.at(np.array([now.t]))[0]]) < 2 * sd).all()
 
 
 # Simulated walks
