@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
-from footfall.pdr.pdr import level_attitude, static_bias
+from footfall.pdr.pdr import PdrParams, StartPose, level_attitude, static_bias
 from footfall.recording import Recording
 
 DEG = np.pi / 180
@@ -67,6 +67,44 @@ def test_what_is_left_beyond_whole_half_seconds_belongs_to_the_last(bias_s, when
         static_bias(recording, bias_s)
 
 
+def test_a_movement_in_the_first_half_second_shows_in_the_second():
+    refuses(start(gyro=3 * DEG * (T < 0.5)), r"moves at t = 0\.5 s")
+
+
+def test_stamps_may_begin_at_any_time():
+    recording = start(gyro=DEG, force=0.2)
+    late = Recording(recording.t + 1000.0, recording.gyro, recording.accel)
+    here, there = static_bias(recording, BIAS_S), static_bias(late, BIAS_S)
+    np.testing.assert_array_equal(here.gyro_bias, there.gyro_bias)
+    assert here.last == there.last
+
+
+def test_a_recording_as_long_as_the_bias_time_will_do_and_a_sample_less_will_not():
+    recording = start()
+    static_bias(recording, float(T[-1]))
+    refuses(recording, r"lasts 11\.99\d* s, shorter than the 12 s at rest", 12.0)
+
+
+def test_a_recording_without_a_sample_in_the_bias_time_is_refused():
+    recording = start()
+    sparse = Recording(recording.t[::400], recording.gyro[::400], recording.accel[::400])
+    refuses(sparse, "no sample within the first 1.5 s", 1.5)
+    static_bias(sparse, 2.0)  # one will do
+
+
+def test_the_bias_is_the_mean_of_every_sample_but_the_first_up_to_the_bias_time():
+    """The first row belongs to the time before the record."""
+    rng = np.random.default_rng(4)
+    gyro, force = 0.2 * DEG * rng.standard_normal(len(T)), 0.02 * rng.standard_normal(len(T))
+    gyro[0] = force[0] = 50.0
+    recording = start(gyro, force)
+    rest = static_bias(recording, BIAS_S)
+    inside = (T > 0) & (T < BIAS_S + 0.002)
+    assert inside.sum() == 2000
+    np.testing.assert_allclose(rest.gyro_bias, recording.gyro[inside].mean(axis=0), rtol=1e-12)
+    np.testing.assert_allclose(rest.force, recording.accel[inside].mean(axis=0), rtol=1e-12)
+
+
 def test_nothing_after_the_bias_time_is_looked_at():
     rest = static_bias(start(gyro=90 * DEG * (T > BIAS_S + 0.002)), BIAS_S)
     assert T[rest.last] == pytest.approx(BIAS_S)
@@ -91,3 +129,12 @@ def test_an_x_axis_has_a_heading_10_degrees_from_vertical(side):
     level_attitude(up(10.1))
     with pytest.raises(InputError, match=r"is 9\.9 deg from vertical, expected at least 10 deg"):
         level_attitude(up(9.9))
+
+
+def test_a_bias_time_of_half_a_second_is_one():
+    assert PdrParams(bias_s=0.5).bias_s == 0.5
+    assert len(static_bias(start(), 0.5).gyro_bias) == 3
+
+
+def test_left_alone_a_walk_starts_at_the_origin_and_heads_along_x():
+    assert StartPose() == StartPose((0.0, 0.0, 0.0), 0.0)
