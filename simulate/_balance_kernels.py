@@ -16,10 +16,11 @@ import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
-from footfall.models.body import HIP_HEIGHT, JOINTS, N_SERVOS, SENSOR_FOOT_POSITION, SENSOR_TOUCH
+from footfall.models.body import HIP_HEIGHT, JOINTS, N_SERVOS, SENSOR_FOOT_POSITION
 from footfall.models.gait import INDEX, mask
 from footfall.simulate._elementwise import choose, clip, turned
 from footfall.simulate._look_kernels import over_ground
+from footfall.simulate._start_kernels import loads, set_out, shifted
 from footfall.simulate.feedback import SERVO_MIRROR, SERVO_SIGN
 from footfall.simulate.state import ACTION_SCALE, CREEP
 
@@ -28,7 +29,7 @@ GO_SPEED = 0.2  # m/s; a commanded speed above it is a wish to walk
 _RESIDUAL_LIMIT = 2.0  # of action scale, feedback included
 _BRAKE = 0.2  # rad per m/s
 _STOP_SPEED = CREEP + 0.05
-_GATE_DOWN_S, _GATE_UP_S = 0.23, 0.35
+_GATE_DOWN_S, _GATE_UP_S = 0.23, 0.40
 _PENDULUM_S = 0.31  # sqrt(height of the centre of mass / g)
 _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
 _STANDING_POINT = -0.004  # m, centre of mass before the middle of the ankles
@@ -68,7 +69,6 @@ _HIP_R, _HIP_L = 7 + JOINTS.index("hip_flexion_r"), 7 + JOINTS.index("hip_flexio
 _SIDE_R, _SIDE_L = 7 + JOINTS.index("hip_adduction_r"), 7 + JOINTS.index("hip_adduction_l")
 _ROLL, _PITCH = 7 + JOINTS.index("lumbar_roll"), 7 + JOINTS.index("lumbar_pitch")
 _FOOT_R, _FOOT_L = SENSOR_FOOT_POSITION.start, SENSOR_FOOT_POSITION.start + 3
-_TOUCH_R, _TOUCH_L = SENSOR_TOUCH.start, SENSOR_TOUCH.start + 3
 
 
 class Balance(NamedTuple):
@@ -210,8 +210,7 @@ def stand_of(s):  # type: ignore[no-untyped-def]
     left = -(ry + ly) / 2 - HIP_HEIGHT * up_y - _TRUNK_ARM * trunk_roll
     along, across = turned(s, s.qvel[0], s.qvel[1])
     along = along + _TRUNK_ARM * (s.qvel[4] + s.qvel[_PITCH - 1])
-    force_r = s.sensor[_TOUCH_R] + s.sensor[_TOUCH_R + 1] + s.sensor[_TOUCH_R + 2]
-    force_l = s.sensor[_TOUCH_L] + s.sensor[_TOUCH_L + 1] + s.sensor[_TOUCH_L + 2]
+    force_r, force_l = loads(s)
     return Stand(
         forward=forward,
         left=left,
@@ -240,7 +239,7 @@ def standing_offset(s, stand, j):  # type: ignore[no-untyped-def]
     # Across a slope the uphill knee bends, and wherever the pelvis has rolled the knee of its high side.
     right = np.maximum(-_UPHILL_KNEE * s.grade_left, 0.0) + np.maximum(-_HIGH_KNEE * s.roll, 0.0)
     left = np.maximum(_UPHILL_KNEE * s.grade_left, 0.0) + np.maximum(_HIGH_KNEE * s.roll, 0.0)
-    return out + right * _BEND_R[j] + left * _BEND_L[j]
+    return out + right * _BEND_R[j] + left * _BEND_L[j] + shifted(s, j)
 
 
 @register_jitable
@@ -249,7 +248,9 @@ def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
     off_balance = (np.abs(stand.capture_forward - 0.005) > 0.115 + 0.3 * stand.stagger) | (
         np.abs(stand.capture_left) > stand.width / 2 + 0.035
     )
-    go = (s.speed_goal > GO_SPEED) | (s.closing & (s.gate < 0.3) & off_balance)
+    begins = set_out(s, s.speed_goal > GO_SPEED, step_phase)
+    stumbles = s.closing & (s.gate < 0.3) & off_balance & np.logical_not(s.setting_out)
+    go = begins | stumbles
     capturable = (
         (stand.capture_forward > _FORWARD_LOW)
         & (stand.capture_forward < _FORWARD_HIGH)

@@ -11,13 +11,15 @@ from numba import njit
 from numba.extending import register_jitable
 
 from footfall.models import gait
+from footfall.models.body import SERVOS
 from footfall.simulate._elementwise import choose
+from footfall.simulate._start_kernels import hold_feet
 from footfall.simulate.state import ACTION_SCALE, AMPLITUDE, CADENCE, TOE_OUT_LEFT, TOE_OUT_RIGHT, WIDTH
 
 _LEG_LENGTH = 0.9  # m, turns a step width into an adduction
 _WIDER = 0.03  # m by which each leg is set wider while stopping
 _SLEW_S = 0.12
-_FROZEN = 0.06  # of the stride after a heel strike, where the phase of a stand rests
+FROZEN = 0.12  # of the stride after a heel strike, where the phase of a stand rests
 
 
 # The reference gait: a table (phases, 17) rad, and per servo (17,) what scales, shifts and leans it.
@@ -34,6 +36,8 @@ _PARTS = {
     "ankles": gait.mask("ankle"),
     "subtalar": gait.mask("subtalar_r") - gait.mask("subtalar_l"),
     "scale": ACTION_SCALE,
+    "kp": np.array([servo.kp for servo in SERVOS.values()]),
+    "kv": np.array([servo.kv for servo in SERVOS.values()]),
 }
 REFERENCE = np.zeros(1, [(name, float, part.shape) for name, part in _PARTS.items()])  # one record
 for _name, _part in _PARTS.items():
@@ -46,7 +50,7 @@ def stride(s):  # type: ignore[no-untyped-def]
     opening = choose(s.gate > 0, np.maximum(s.gate, 0.5), 0.0)
     pace = choose(s.closing, s.gate * s.gate, opening)
     s.advance = gait.stride_frequency(s.speed) * (1 + s.varied[CADENCE]) * pace * s.dt
-    resting = np.floor(s.phase * 2) / 2 + _FROZEN
+    resting = np.floor(s.phase * 2) / 2 + FROZEN
     s.next_phase = choose(s.closing & (s.gate <= 0), resting, s.phase + s.advance)
 
 
@@ -100,6 +104,7 @@ def targets(s, ref, rows, out):  # type: ignore[no-untyped-def]
             walking = ref.table[rows[i], j] * factor + offset
             residual = (1 - part) * s.residual[j] + part * s.next_residual[j]
             out[i, j] = gate * walking + (1 - gate) * standing + slope + ref.scale[j] * residual
+    hold_feet(s, ref, out)
 
 
 @register_jitable

@@ -34,7 +34,8 @@ PHYSICS_STEP = 0.001  # s, of the subject's time
 SUBSTEPS = 30  # physics steps of a control step
 STAND_S = 16.0  # s of standing, to come to rest, before the record begins
 END_STAND_S = 5.0  # s of standing at the end
-# A standing foot would creep by tenths of a millimetre a second, on a slope by millimetres.
+# A standing foot would creep by tenths of a millimetre a second, on a slope by millimetres, and under the
+# torques of the first step it would turn by some degrees.
 _NOSLIP_ITERATIONS = 4
 _SLOWEST = 0.35  # m/s; a walk that takes longer than this, or to a stop longer than _SETTLING (s), is stuck
 _SETTLING = 20.0
@@ -158,7 +159,7 @@ class Outing:
         route, step = small.route, PHYSICS_STEP / subject.time_scale
         sloping = small.ground is not None
         model = build_body(subject.build, timestep=step, mount=plan.mount, sloping=sloping)
-        self.plan, self._scale, self._stands = small, subject.scale, False
+        self.plan, self._scale = small, subject.scale
         self.walkers = Walkers(
             [model],
             gains,
@@ -179,7 +180,7 @@ class Outing:
         )
         self.walkers.place(
             np.ones(1, dtype=bool),
-            phase=np.zeros(1),
+            phase=np.array([0.5 * stream(plan.seed, "first step").integers(2)]),
             speed=np.zeros(1),
             heading=route.heading[:1],
             position=np.array([[route.x[0], route.y[0], route.z[0]]]),
@@ -217,9 +218,8 @@ class Outing:
         walkers = self.walkers
         x, y = walkers.qpos[0, :2]
         standing = bool(walkers.gate.value[0] <= 0)
-        if standing != self._stands:
-            walkers.models[0].opt.noslip_iterations = _NOSLIP_ITERATIONS if standing else 0
-            self._stands = standing
+        steady = bool(walkers.steady[0])
+        walkers.models[0].opt.noslip_iterations = _NOSLIP_ITERATIONS if steady else 0
         speed, turn = self._pursuit.command(x, y, walkers.heading[0], walkers.speed[0], standing)
         walkers.speed_goal[0], walkers.turn_goal[0] = speed, turn
 

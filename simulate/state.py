@@ -60,6 +60,11 @@ WALKER = np.dtype(
         ("closing", bool),  # has decided to stand, or stands
         ("stagger", float),  # rad, pose of the standing feet: one before the other
         ("spread", float),  # rad, apart
+        # setting out
+        ("weight", float),  # N
+        ("setting_out", bool),  # from the wish to walk in a stand until the first step has landed
+        ("left_first", bool),  # the left foot stands through the first step
+        ("shift", float),  # s, for which the weight has been shifting
         # what observation, feedback and reward share: `look`
         ("rotation", float, (3, 3)),  # body to world
         ("yaw", float),

@@ -16,10 +16,11 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
+from footfall.conventions import GRAVITY
 from footfall.models import body, gait
 from footfall.models.subject import Habits
 from footfall.simulate._balance_kernels import act_all
-from footfall.simulate._gait_kernels import REFERENCE, reference_all, stride_all, targets_all
+from footfall.simulate._gait_kernels import FROZEN, REFERENCE, reference_all, stride_all, targets_all
 from footfall.simulate._look_kernels import land_all, look_all
 from footfall.simulate.feedback import gain_records
 from footfall.simulate.ground import N_PLANES, Look, tread
@@ -102,6 +103,7 @@ class Walkers:
 
         self._state = state = np.zeros(n, WALKER)
         state["dt"] = self.dt
+        state["weight"] = [GRAVITY * model.body_mass.sum() for model in models]
         state["up"], state["fresh"] = [0.0, 0.0, 1.0], True
         self.variability, self.gate = Variability(state), Gate(state["gate"], state["closing"])
         self.gate.value[:] = 1.0
@@ -172,7 +174,9 @@ class Walkers:
         joints = np.zeros((m, body.N_JOINTS))
         pose = gate * walking + (1 - gate) * gait.STANDING
         slope = forward[:, None] * REFERENCE["ankles"] + left[:, None] * REFERENCE["subtalar"]
-        joints[:, body.SERVO_JOINT] = pose + slope
+        toe_out = np.array([habit.toe_out for habit in habits])[:, None]
+        turned_out = toe_out * (REFERENCE["toe_out_right"] + REFERENCE["toe_out_left"])
+        joints[:, body.SERVO_JOINT] = pose + slope - turned_out
         qpos[:, 7:] = joints + joint_noise
         for side in "rl":  # the knee's stop
             knee = 7 + body.JOINTS.index(f"knee_{side}")
@@ -185,7 +189,7 @@ class Walkers:
         # Nothing is sensed yet, but the ground under the feet is to be found.
         self.sensor[mask, body.SENSOR_FOOT_POSITION] = np.tile(qpos[:, :3], 2)
         self.phase[mask], self.heading[mask] = (
-            np.where(standing, np.floor(phase * 2) / 2 + 0.06, phase),
+            np.where(standing, np.floor(phase * 2) / 2 + FROZEN, phase),
             heading,
         )
         self.speed[mask] = self.speed_goal[mask] = speed
@@ -195,6 +199,7 @@ class Walkers:
         self._state["stagger"][mask] = self._state["spread"][mask] = 0
         self.variability.place(mask, variability, habits)
         self.gate.value[mask], self.gate.closing[mask] = np.where(standing, 0.0, 1.0), standing
+        self._state["setting_out"][mask], self._state["shift"][mask] = False, 0
         self.fresh[mask] = True
         self._find_ground(self.qpos, self.sensor)
         look_all(self._state)
@@ -213,6 +218,12 @@ class Walkers:
         """(n, 17) feedback and policy as applied at the end of the last step, a copy."""
         copy: np.ndarray = self._state["residual"].copy()
         return copy
+
+    @property
+    def steady(self) -> np.ndarray:
+        """(n,) bool: stops, stands or sets out, so that its loaded feet should lie still."""
+        steady: np.ndarray = self.gate.closing | self._state["setting_out"]
+        return steady
 
     def _find_ground(self, position: np.ndarray, sensor: np.ndarray) -> None:
         """Under the pelvis (n, 2+), and under the feet."""
