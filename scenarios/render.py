@@ -104,7 +104,7 @@ def _scenes(plan: Plan) -> Iterator[tuple[Stage, float]]:
     """The walk as it is drawn, step by step, and s since the first step (0 while it stands)."""
     stage, strode = None, 0.0
     for moment in stroll(plan, stock_policy(), stand=_STAND_S):
-        stage = stage or Stage(moment.walkers, moment.outing)
+        stage = stage or Stage(moment.walkers, moment.outing.plan.subject.build, moment.outing)
         stage.look()
         strode += CONTROL_INTERVAL * bool(moment.walkers.gate.value[0] > 0)
         yield stage, strode

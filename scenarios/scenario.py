@@ -66,10 +66,13 @@ _WanderTimeS = Annotated[
 
 
 class GaitTable(Strict):
-    """How the path is walked. `variability` 1 is that of people, 0 a metronome's."""
+    """How the path is walked. `variability` 1 is that of people, 0 a metronome's; the others: its parts."""
 
     pace_m_s: float = Field(ge=0.7, le=1.7)
     variability: float = Field(1.0, ge=0, le=1.5)
+    placement_variability: float = Field(1.0, ge=0, le=2)
+    cadence_variability: float = Field(1.0, ge=0, le=2)
+    toe_out_variability: float = Field(1.0, ge=0, le=2)
     action_noise: float = Field(0.0, ge=0, le=0.3)
     wander_m: _WanderM = (0.0,)
     wander_time_s: _WanderTimeS = (4.0,)
@@ -163,7 +166,9 @@ class Scenario:
     subjects : used in turn from walk to walk
     stops : pauses, in walking order
     pace : m/s, asked of the walker on straights; paces : changes of it, in walking order
-    variability : of the gait, 1 = that of people; action_noise : SD of the noise on the walker's actions
+    variability : of the gait, 1 = that of people; placement_variability, cadence_variability and
+        toe_out_variability : of where and when the feet land and how far they turn out, each times the former
+    action_noise : SD of the noise on the walker's actions
     wander, wander_time : m and s, slow lateral wander of the steering's aim; each used in turn
     push, push_every : N s and s, pushes at the trunk; 0: none
     temperatures : of the air around the sensor from the recording's start, used in turn from walk to walk
@@ -184,6 +189,9 @@ class Scenario:
     pace: float
     paces: tuple[Pace, ...]
     variability: float
+    placement_variability: float
+    cadence_variability: float
+    toe_out_variability: float
     action_noise: float
     wander: tuple[float, ...]
     wander_time: tuple[float, ...]
@@ -223,6 +231,9 @@ class Scenario:
             paces=self.paces,
             stops=self.stops,
             variability=self.variability,
+            placement_variability=self.placement_variability,
+            cadence_variability=self.cadence_variability,
+            toe_out_variability=self.toe_out_variability,
             action_noise=self.action_noise,
             wander=self.wander[walk % len(self.wander)],
             wander_time=self.wander_time[walk % len(self.wander_time)],
@@ -281,6 +292,9 @@ def _scenario(file: File, content: ScenarioFile) -> Scenario:
         pace=gait.pace_m_s,
         paces=_paces(content.paces, path.route.length),
         variability=gait.variability,
+        placement_variability=gait.placement_variability,
+        cadence_variability=gait.cadence_variability,
+        toe_out_variability=gait.toe_out_variability,
         action_noise=gait.action_noise,
         wander=gait.wander_m,
         wander_time=gait.wander_time_s,

@@ -5,7 +5,6 @@ Everything here is in the units of the simulated body (models.subject). GL is lo
 
 from __future__ import annotations
 
-import copy
 import os
 import sys
 import threading
@@ -20,6 +19,7 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.models import body
 from footfall.models.body import Ground, build_body
+from footfall.models.subject import Build
 from footfall.simulate.journey import Outing
 from footfall.simulate.route import Route
 from footfall.simulate.walkers import CONTROL_INTERVAL, Walkers
@@ -46,7 +46,7 @@ class Stage:
 
     Parameters
     ----------
-    walkers : the first of them is drawn
+    walkers : the first of them is drawn; build : its body's
     outing : that it is on, with a route to show and the ground; or None
 
     Attributes
@@ -55,20 +55,22 @@ class Stage:
     moves : how often the part of the ground that is drawn has moved
     """
 
-    def __init__(self, walkers: Walkers, outing: Outing | None = None) -> None:
+    def __init__(self, walkers: Walkers, build: Build, outing: Outing | None = None) -> None:
         plan = None if outing is None else outing.plan
         self.walkers, self.moves = walkers, 0
         self._ground = None if plan is None else plan.ground
-        if plan is None or self._ground is None:
-            # A copy: who draws may change how it looks, and a viewer's user anything.
-            self.model = copy.copy(walkers.models[0])
-        else:
-            patch = _patch(self._ground, walkers.qpos[0])
-            step, build = walkers.models[0].opt.timestep, plan.subject.build
-            # Sloping, or a level plane would be seen too; the planes under the feet are not drawn.
-            self.model = build_body(build, timestep=step, mount=plan.mount, sloping=True, scenery=patch)
+        patch = None if self._ground is None else _patch(self._ground, walkers.qpos[0])
+        # Sloping, or a level plane would be seen too; the planes under the feet are not drawn.
+        self.model = model = build_body(
+            build,
+            timestep=walkers.models[0].opt.timestep,
+            mount=None if plan is None else plan.mount,
+            sloping=patch is not None,
+            looks=True,
+            scenery=patch,
+        )
+        if patch is not None:
             self._move_ground()
-        model = self.model
         # Clipping and shadows to the walker's scale, not to that of a landscape of a kilometre.
         model.stat.extent, model.stat.center[:] = 2.0, 0.0
         if self._ground is not None:  # which at the usual 4 would have speckles in its own shade

@@ -55,7 +55,9 @@ class Plan:
     route : where to walk; ground : level when None
     pace : m/s commanded on straights; paces : changes of it on the way, in walking order
     stops : pauses on the way, in walking order
-    variability : of the gait, 1 = that of people; action_noise : SD of the noise on the policy's action
+    variability : of the gait, 1 = that of people; placement_variability, cadence_variability and
+        toe_out_variability : of where and when the feet land and how far they turn out, each times the former
+    action_noise : SD of the noise on the policy's action
     wander, wander_time : m and s, slow lateral wander of the aim
     calibration : s of standing before the first step
     push, push_every : N s and s; pushes at the trunk into random directions from the first step on: the only
@@ -72,6 +74,9 @@ class Plan:
     paces: tuple[Pace, ...] = ()
     stops: tuple[Stop, ...] = ()
     variability: float = 1.0
+    placement_variability: float = 1.0
+    cadence_variability: float = 1.0
+    toe_out_variability: float = 1.0
     action_noise: float = 0.0
     wander: float = 0.0
     wander_time: float = 4.0
@@ -185,7 +190,8 @@ class Outing:
             heading=route.heading[:1],
             position=np.array([[route.x[0], route.y[0], route.z[0]]]),
             standing=np.ones(1, dtype=bool),
-            variability=np.array([plan.variability]),
+            variability=plan.variability
+            * np.array([[plan.placement_variability, plan.cadence_variability, plan.toe_out_variability]]),
             habits=[subject.habits],
         )
         waiting = first.duration + last.duration + sum(stop.duration + _SETTLING for stop in small.stops) + 20

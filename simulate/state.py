@@ -22,6 +22,8 @@ CREEP = 0.30  # m/s at most, of a walker that wishes to stand and drifts backwar
 
 # Places in `varied`: cadence, hip excursion (both relative), step width (m), toe-out of each foot (rad).
 CADENCE, AMPLITUDE, WIDTH, TOE_OUT_RIGHT, TOE_OUT_LEFT = range(5)
+# Places in `level`.
+OF_PLACEMENT, OF_CADENCE, OF_TOE_OUT = range(3)
 
 WALKER = np.dtype(
     [
@@ -48,7 +50,7 @@ WALKER = np.dtype(
         ("residual", float, body.N_SERVOS),  # feedback and policy as applied, in units of ACTION_SCALE
         ("next_residual", float, body.N_SERVOS),
         ("feedback", float, body.N_SERVOS),  # rad, for right stance
-        ("level", float),  # of variability
+        ("level", float, 3),  # of variability: of foot placement, cadence and toe-out
         ("slow", float),  # part of the cadence
         ("asymmetry", float),
         ("varied", float, 5),

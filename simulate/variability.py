@@ -1,8 +1,8 @@
 """What keeps the gait from being a metronome: seeded scatter of timing, step length, width and toe-out.
 
-Per step: cadence N(0, 2.6 %) plus a slow AR(1) part (1.3 %, rho 0.9), hip excursion N(0, 3 %), step width
-AR(1) about 1 cm, toe-out of the landing foot N(0, 1.2 deg); each slews within 120 ms. A person's habits shift
-the means.
+Per step: cadence N(0, 2.6 %) plus a slow AR(1) part (1.3 %, rho 0.9); placement, which is hip excursion
+N(0, 1.65 %) and step width AR(1) about 5.5 mm; toe-out of the landing foot N(0, 2.8 deg). Each slews within
+120 ms. A person's habits shift the means.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Variability:
 
     Attributes
     ----------
-    level : (n,) factor on every standard deviation
+    level : (n, 3) factors on the standard deviations of foot placement, cadence and toe-out
     value : (n, 5) as applied; the control step slews it towards `target` (n, 5)
     """
 
@@ -33,8 +33,8 @@ class Variability:
         self.mean, self.value, self.target = state["varied_mean"], state["varied"], state["varied_goal"]
 
     def place(self, mask: np.ndarray, level: np.ndarray, habits: list[Habits]) -> None:
-        """Start the walkers in `mask` with these levels (m,) and habits (m)."""
-        self.level[mask] = level
+        """Start the walkers in `mask` with these levels, (m, 3) or one for all (m,), and habits (m)."""
+        self.level[mask] = level if level.ndim == 2 else level[:, None]
         self.slow[mask] = 0
         self.asymmetry[mask] = [habit.asymmetry for habit in habits]
         self.mean[mask] = [

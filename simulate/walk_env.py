@@ -204,7 +204,7 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
         if self.render_mode is None or course is None:
             return
         if self._stage is None:
-            self._stage = Stage(course.walkers, course.outing)
+            self._stage = Stage(course.walkers, course.build, course.outing)
         elif restart:
             self._stage.restart()
         if self.render_mode == "rgb_array":
@@ -240,8 +240,9 @@ class _Commands:
     def __init__(self, subject: Subject | None, difficulty: Difficulty, gains: np.ndarray) -> None:
         self.subject = subject
         self.scale = 1.0 if subject is None else subject.scale
+        self.build = Build() if subject is None else subject.build
         self._task = Task(
-            [Build() if subject is None else subject.build],
+            [self.build],
             difficulty,
             gains,
             timesteps=np.array([PHYSICS_STEP / np.sqrt(self.scale)]),
@@ -267,6 +268,7 @@ class _Path:
     def __init__(self, plan: Plan, gains: np.ndarray) -> None:
         self.outing = Outing(plan, gains, stand=_STAND_S)
         self.walkers, self.scale = self.outing.walkers, plan.subject.scale
+        self.build = plan.subject.build
         self.strayed = False
 
     @property

@@ -113,6 +113,7 @@ class Walkers:
         self.phase, self.left_stance = state["phase"], state["left_stance"]
         self.heading, self.mean_velocity = state["heading"], state["mean_velocity"]
         self.speed, self.speed_goal = state["speed"], state["speed_goal"]
+        self.setting_out = state["setting_out"]
         self.turn, self.turn_goal = state["turn"], state["turn_goal"]
         self.rotation, self.yaw, self.cos, self.sin = (
             state[key] for key in ("rotation", "yaw", "cos", "sin")
@@ -144,7 +145,11 @@ class Walkers:
         joint_noise: np.ndarray | float = 0.0,
         velocity_noise: np.ndarray | float = 0.0,
     ) -> None:
-        """Put the walkers in `mask` (m of them) into mid-gait or a stand (all arguments (m, ...))."""
+        """Put the walkers in `mask` (m of them) into mid-gait or a stand (all arguments (m, ...)).
+
+        `variability` is that of placement, cadence and toe-out (m, 3), or one for all (m,). From a stand the
+        left foot steps first where `phase` is below a half, else the right one.
+        """
         m = int(mask.sum())
         speed = np.where(standing, 0.0, speed)
         epsilon, gate = 0.002, np.where(standing, 0.0, 1.0)[:, None]
@@ -199,7 +204,7 @@ class Walkers:
         self._state["stagger"][mask] = self._state["spread"][mask] = 0
         self.variability.place(mask, variability, habits)
         self.gate.value[mask], self.gate.closing[mask] = np.where(standing, 0.0, 1.0), standing
-        self._state["setting_out"][mask], self._state["shift"][mask] = False, 0
+        self.setting_out[mask], self._state["shift"][mask] = False, 0
         self.fresh[mask] = True
         self._find_ground(self.qpos, self.sensor)
         look_all(self._state)
@@ -222,7 +227,7 @@ class Walkers:
     @property
     def steady(self) -> np.ndarray:
         """(n,) bool: stops, stands or sets out, so that its loaded feet should lie still."""
-        steady: np.ndarray = self.gate.closing | self._state["setting_out"]
+        steady: np.ndarray = self.gate.closing | self.setting_out
         return steady
 
     def _find_ground(self, position: np.ndarray, sensor: np.ndarray) -> None:

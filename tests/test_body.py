@@ -95,11 +95,33 @@ def test_the_reference_foot_is_flat_in_mid_stance() -> None:
     assert np.degrees(np.abs(foot_pitch)).max() < 4
 
 
+@pytest.mark.parametrize("sloping", [False, True])
+def test_what_is_only_seen_changes_no_bit(sloping: bool) -> None:
+    """The simulated body without its looks moves as the one that is drawn; all that touches is in both."""
+    bare, dressed = (
+        build_body(Build(), timestep=STEP, sloping=sloping, looks=looks) for looks in (False, True)
+    )
+    touching = (dressed.geom_contype | dressed.geom_conaffinity) != 0
+    assert bare.ngeom == touching.sum() < dressed.ngeom
+    states = []
+    for model in (bare, dressed):
+        data, rng = mujoco.MjData(model), np.random.default_rng(1)
+        data.qpos[2] = 1.0
+        for _ in range(300):
+            data.ctrl[:] = rng.normal(0, 0.3, model.nu)
+            mujoco.mj_step(model, data)
+        assert data.ncon > 0
+        states.append(np.concatenate([data.qpos, data.qvel, data.sensordata]))
+    np.testing.assert_array_equal(*states)
+
+
 def test_scenery_is_drawn_at_its_height_and_touches_nothing() -> None:
     """The ground that is seen is where the grid says, also off its nodes."""
     x = np.arange(0, 20.01, 0.5)
     heights = np.tile(0.05 * x, (41, 1)).astype(np.float32)
-    model = build_body(Build(), timestep=STEP, sloping=True, scenery=Ground(-5.0, -10.0, 0.5, heights))
+    model = build_body(
+        Build(), timestep=STEP, sloping=True, looks=True, scenery=Ground(-5.0, -10.0, 0.5, heights)
+    )
     scenery = model.geom("scenery")
     assert not scenery.contype.any()
     assert not scenery.conaffinity.any()

@@ -120,7 +120,7 @@ def test_feet_that_stand_leave_prints_under_them_on_the_path(short_plan: Plan) -
     outing = Outing(short_plan, stock_policy().feedback_gains, stand=5.0)
     route = outing.plan.route
     line = np.column_stack([route.x, route.y])
-    stage = Stage(outing.walkers, outing)
+    stage = Stage(outing.walkers, outing.plan.subject.build, outing)
     assert len(ground_marks(stage)["print"]) == 0  # it has not touched the ground yet
     for _ in range(30):
         outing.walkers.step(STILL[None])
@@ -147,7 +147,7 @@ def test_on_slopes_their_ground_alone_is_seen(short_plan: Plan) -> None:
         (downhill, mujoco.mjtGeom.mjGEOM_HFIELD),
     ):
         outing = Outing(plan, stock_policy().feedback_gains, stand=1.0)
-        stage = Stage(outing.walkers, outing)
+        stage = Stage(outing.walkers, outing.plan.subject.build, outing)
         scene = mujoco.MjvScene(stage.model, 1000)
         everything, option = mujoco.mjtCatBit.mjCAT_ALL.value, mujoco.MjvOption()
         camera = stage.camera(SIDE_VIEW)

@@ -85,7 +85,7 @@ def test_open_paths_have_ground_beyond_their_ends():
 
 def ray_heights(terrain, x, y):
     """The ground's height as MuJoCo draws it, by rays from above."""
-    model = build_body(Build(), timestep=1e-3, scenery=terrain)
+    model = build_body(Build(), timestep=1e-3, looks=True, scenery=terrain)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     above = 100.0

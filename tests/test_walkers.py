@@ -364,3 +364,21 @@ def test_a_file_that_is_no_policy_is_refused(tmp_path: Path) -> None:
         load_policy(bad)
     with pytest.raises(InputError, match=r"absent\.npz"):
         load_policy(tmp_path / "absent.npz")
+
+
+@pytest.mark.parametrize(("part", "moved"), [(0, [1, 2]), (1, [0]), (2, [3, 4])])
+def test_each_part_of_variability_moves_its_own(part: int, moved: list[int]) -> None:
+    """Placement: hip excursion and step width; cadence; toe-out of either foot. Twice as much: twice."""
+    n, spread = 2000, []
+    for level in (0.5, 1.0):
+        state, rng = np.zeros(n, WALKER), np.random.default_rng(2)
+        people = Variability(state)
+        levels = np.zeros((n, 3))
+        levels[:, part] = level
+        people.place(np.ones(n, dtype=bool), levels, [Habits()] * n)
+        for half in (0.0, 0.5, 0.0, 0.5):
+            state["next_phase"] = half
+            people.draw(np.arange(n), rng)
+        spread.append(people.target.std(axis=0))
+    assert set(np.flatnonzero(spread[0])) == set(moved)
+    np.testing.assert_allclose(spread[1][moved], 2 * spread[0][moved], rtol=0.06)
