@@ -25,16 +25,15 @@ from _real import BESIDE, find
 from rich.table import Table
 
 from footfall.hdr.filtered import filter_track
-from footfall.hdr.methods import Reckoning, pdr_track
+from footfall.hdr.methods import Reckoning, on_papers_filter, pdr_track
 from footfall.models.imu import draw_unit, load_spec
 from footfall.models.policy import stock_policy
 from footfall.pdr.detectors import DETECTORS
-from footfall.pdr.filtering import run_filter
 from footfall.pdr.ins import FilterSettings, frozen
 from footfall.pdr.pdr import PdrParams
 from footfall.pdr.rest import still_time
 from footfall.scenarios.paper import IHDE_TABLE_2, range_text
-from footfall.scenarios.run import start_pose
+from footfall.scenarios.run import reckoning, start_pose
 from footfall.scenarios.scenario import Scenario, load_scenario
 from footfall.scenarios.score import compare, score
 from footfall.simulate.cache import cached_walk
@@ -82,9 +81,9 @@ def perfect(scenario: Scenario) -> Feet:
     """The scenario's first walk, in a perfect IMU."""
     walk = cached_walk(scenario.plan(0))
     recording = record(walk, draw_unit(load_spec("perfect"), 0), seed=0)
-    reckoning = Reckoning(recording, start_pose(walk), PdrParams(detector=GLRT))
-    truth = compare(pdr_track(reckoning.footfalls), walk)
-    return Feet("simulated, perfect IMU", reckoning, reckoning.footfalls.heading - truth.heading_error)
+    reckoned = Reckoning(recording, start_pose(walk), PdrParams(detector=GLRT))
+    truth = compare(pdr_track(reckoned.footfalls), walk)
+    return Feet("simulated, perfect IMU", reckoned, reckoned.footfalls.heading - truth.heading_error)
 
 
 def real_feet() -> list[Feet]:
@@ -164,8 +163,7 @@ def walk_test(job: Job) -> dict[str, float]:
     errors = {}
     for name, settings in filters().items():
         for unit, signal in (("", recording), (", perfect IMU", still)):
-            r = Reckoning(signal, start_pose(walk), PdrParams(detector=GLRT))
-            found = run_filter(signal, settings, r.pdr, r.start, found=r.detected)
+            found = on_papers_filter(reckoning(scenario, walk, signal)).filtered(settings)
             errors[name + unit] = score(filter_track(found, settings, name=name), walk).return_error_pct
     return errors
 

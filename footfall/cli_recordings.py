@@ -52,6 +52,13 @@ def record(
     outdoors: Annotated[
         float, typer.Option(help="Temperature where it is walked, degC.", callback=finite)
     ] = 20.0,
+    bias_shift: Annotated[
+        float,
+        typer.Option(
+            help="Gyro bias about the vertical, deg/s, left positive, from the walk's first step on.",
+            callback=finite,
+        ),
+    ] = 0.0,
     format: FormatOption = "auto",
     unit: UnitOption = None,
     rate: RateOption = None,
@@ -76,12 +83,23 @@ def record(
         raise InputError("record: expected either a walk or --from-recording with a recording")
     if walk is not None and (format != "auto" or unit or rate is not None):
         raise InputError("record: --format, --unit and --rate tell how to read --from-recording, not a walk")
+    if walk is None and bias_shift:
+        raise InputError(
+            "record: --bias-shift is for walks: nobody says when a real recording begins to move"
+        )
     worn = draw_unit(load_spec(imu), unit_seed)
     noise = unit_seed if noise_seed is None else noise_seed
     air = TemperatureProfile.step(indoors, outdoors)
     with ERR.status("recording"):
         if walk is not None:
-            recording = record_walk(read_walk(walk), worn, seed=noise, temperature=air, without=without or ())
+            recording = record_walk(
+                read_walk(walk),
+                worn,
+                seed=noise,
+                temperature=air,
+                without=without or (),
+                bias_shift=math.radians(bias_shift),
+            )
         else:
             assert from_recording is not None
             real, _ = read(from_recording, format, sizes=parse_units(unit or ()), rate_hz=rate)
@@ -132,7 +150,7 @@ def track(
     reference: Annotated[
         float | None,
         typer.Option(
-            help="One of them, deg, counter-clockwise from x; if left out, the heading at the start.",
+            help="One of them, deg, counter-clockwise from x; if left out, that in which the walk sets out.",
             callback=finite,
             show_default=False,
         ),

@@ -53,7 +53,7 @@ def track_file(
     start : where the IMU rests before the walk; None for what the recording says (`StartPose.of`)
     heading : rad, at the start, in place of the start's own
     directions, reference : dominant directions, for methods that go by them: how many (None for 4), and one
-        of them (rad; None for the heading at the start)
+        of them (rad; None for that in which the walk sets out)
 
     Raises
     ------
@@ -68,7 +68,7 @@ def track_file(
     source = open_source(path, format, sizes, rate_hz)
     start = start or StartPose.of(source.meta)
     start = start if heading is None else replace(start, heading=heading)
-    counted = told_directions(method, directions, reference, start)
+    counted = told_directions(method, directions, reference)
     used = params.bias_s
 
     def run_through() -> Footfalls:

@@ -15,6 +15,7 @@ import numpy as np
 
 from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams, Directions, deviation
+from footfall.hdr.step_heading import HeadingSource, StepHeadings, require_source
 from footfall.pdr.filtering import Step
 from footfall.pdr.footfalls import Footfalls
 
@@ -64,19 +65,22 @@ HDE_2010_UNITS: Mapping[str, str] = {"deviation": "rad", "attenuator": "", "corr
 def hde_2010(footfalls: Footfalls, params: Hde2010Params | None = None) -> Hde2010Trace:
     """HDE on dead reckoning's headings, without a filter.
 
-    C_i = C_{i-1} - A_i sign(dev(psi_raw,i + C_{i-1})) i_c and psi_i = psi_raw,i + C_i, where dev is the
-    deviation from the nearest dominant direction and sign(0) = 0. The original was not at hand: this is its
-    controller as others describe it, with HDR's attenuator A_i = max(0, 1 - |raw_i| / theta_w).
+    C_i = C_{i-1} - A_i sign(dev(c_i + C_{i-1})) i_c and psi_i = psi_raw,i + C_i, where c is the course of the
+    stride, dev its deviation from the nearest dominant direction, and sign(0) = 0. The original was not at
+    hand: this is its controller as others describe it, with HDR's attenuator A_i = max(0, 1 - |raw_i| /
+    theta_w).
     """
     params = params or Hde2010Params()
     count, base = params.directions.count, params.directions.reference
     assert base is not None
     n = len(footfalls)
     attenuator = np.maximum(0.0, 1.0 - np.abs(footfalls.rate) / params.theta_w)
+    stride = np.diff(footfalls.position, axis=0)
+    course = np.arctan2(stride[:, 1], stride[:, 0])
     off, correction = np.zeros(n), np.zeros(n)
     now = 0.0
     for i in range(1, n):
-        off[i] = deviation(float(footfalls.heading[i]) + now, base, count)
+        off[i] = deviation(float(course[i - 1]) + now, base, count)
         now -= float(attenuator[i] * np.sign(off[i])) * params.i_c
         correction[i] = now
     return Hde2010Trace(off, attenuator, correction, footfalls.heading + correction)
@@ -88,14 +92,18 @@ class HdeParams:
 
     Attributes
     ----------
+    heading : of a step, which is compared with the directions: the foot's "yaw", the "course" of the stride,
+        or "both" (`footfall.hdr.step_heading`)
     sigma : rad, standard deviation of the heading measurement, one a footfall
     directions : the dominant directions
     """
 
-    sigma: float = math.radians(8.0)
+    heading: HeadingSource = "course"
+    sigma: float = math.radians(12.0)
     directions: DirectionParams = field(default_factory=DirectionParams)
 
     def __post_init__(self) -> None:
+        require_source("hde", self.heading)
         if not 0 < self.sigma < math.inf:
             raise InputError(f"hde: sigma = {self.sigma} rad, expected a positive number")
 
@@ -122,11 +130,22 @@ class Hde:
         self.params = params or HdeParams()
         self.rows = [HdeRow()]
         self._directions = Directions(self.params.directions)
+        self._steps = StepHeadings(self.params.heading)
 
     def __call__(self, step: Step) -> tuple[float, float] | None:
         """Innovation (rad, truth - estimate) and its standard deviation (rad), or None."""
-        self._directions.learn(step.heading)
-        nearest = self._directions.nearest(step.heading)
-        row = HdeRow() if nearest is None else HdeRow(nearest, nearest - step.heading)
+        row = self._judge(step)
         self.rows.append(row)
-        return None if nearest is None else (row.innovation, self.params.sigma)
+        return None if math.isnan(row.innovation) else (row.innovation, self.params.sigma)
+
+    def applied(self, turned: float) -> None:
+        """The filter's heading was turned by `turned` (rad)."""
+        self._steps.applied(turned)
+
+    def _judge(self, step: Step) -> HdeRow:
+        heading = self._steps(step)
+        if heading is None:
+            return HdeRow()
+        self._directions.learn(heading)
+        nearest = self._directions.nearest(heading)
+        return HdeRow() if nearest is None else HdeRow(nearest, nearest - heading)

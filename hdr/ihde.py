@@ -8,7 +8,6 @@ paper at hand lost minus signs and the 1 / (W - 1) of Eq. 20; here they are as t
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -16,6 +15,7 @@ from typing import NamedTuple
 from footfall.conventions import wrap
 from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams, Directions
+from footfall.hdr.step_heading import HeadingSource, StepHeadings, require_source
 from footfall.hdr.straightness import bell_membership, circular_mean, circular_std, z_membership
 from footfall.pdr.filtering import Step
 
@@ -26,6 +26,8 @@ class IhdeParams:
 
     Attributes
     ----------
+    heading : of a step: the foot's "yaw", the "course" of the stride, or "both"
+        (`footfall.hdr.step_heading`)
     window : W, footfalls that are judged together
     k1, a : 1/rad and 1, of the Z membership (Eq. 21): somebody whose headings scatter by a / k1 is taken for
         half straight. That must lie above the scatter of the foot's yaw on straights, and below a curve's
@@ -39,6 +41,7 @@ class IhdeParams:
     directions : the dominant directions
     """
 
+    heading: HeadingSource = "course"
     window: int = 5
     k1: float = math.degrees(4.0)
     a: float = 8.0
@@ -54,6 +57,7 @@ class IhdeParams:
     directions: DirectionParams = field(default_factory=DirectionParams)
 
     def __post_init__(self) -> None:
+        require_source("ihde", self.heading)
         if self.window < 2:
             raise InputError(f"ihde: window = {self.window}, expected at least 2 footfalls")
         for name in ("k1", "a", "b", "c", "gamma_t", "sigma"):
@@ -138,7 +142,7 @@ class Ihde:
         self.params = params or IhdeParams()
         self.rows = [IhdeRow()]
         self._directions = Directions(self.params.directions)
-        self._headings: deque[float] = deque(maxlen=self.params.window)
+        self._steps = StepHeadings(self.params.heading, self.params.window)
 
     def __call__(self, step: Step) -> tuple[float, float] | None:
         """Innovation (rad, truth - estimate) and its standard deviation (rad), or None."""
@@ -146,18 +150,22 @@ class Ihde:
         self.rows.append(row)
         return None if math.isnan(row.innovation) else (row.innovation, self.params.sigma)
 
+    def applied(self, turned: float) -> None:
+        """The filter's heading was turned by `turned` (rad)."""
+        self._steps.applied(turned)
+
     def _judge(self, step: Step) -> IhdeRow:
-        self._headings.append(step.heading)
-        if len(self._headings) < self.params.window:
+        heading, recent = self._steps(step), self._steps.recent
+        if heading is None or len(recent) < self.params.window:
             return IhdeRow()
-        found = evaluate(self._headings, step.stride_time, self.params)
+        found = evaluate(recent, step.stride_time, self.params)
         row = IhdeRow(*found[:4], enabled=float(found.enabled))
         if not found.enabled:
             return row  # the paper feeds an error of 0 here, which would claim that the heading is right
-        mean = circular_mean(self._headings)
+        mean = circular_mean(recent)
         self._directions.learn(mean)
         chosen = reference(mean, self._directions, self.params)
         if chosen is None:
             return row
-        innovation = float(wrap(chosen[0] - step.heading))  # Eq. 27
+        innovation = float(wrap(chosen[0] - heading))  # Eq. 27
         return row._replace(reference=chosen[0], dominant=float(chosen[1]), innovation=innovation)

@@ -15,6 +15,7 @@ from typing import NamedTuple
 from footfall.conventions import wrap
 from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams, Directions
+from footfall.hdr.step_heading import HeadingSource, StepHeadings, require_source
 from footfall.hdr.straightness import circular_mean
 from footfall.pdr.filtering import Step
 
@@ -87,6 +88,8 @@ class JimenezParams:
 
     Attributes
     ----------
+    heading : of a step: the foot's "yaw", the "course" of the stride, or "both"
+        (`footfall.hdr.step_heading`)
     window : footfalls that are judged together
     gate : rad, all of them must lie this near to their mean heading for a straight
     sigma : rad, standard deviation of the heading measurement where mean heading and direction agree
@@ -94,6 +97,7 @@ class JimenezParams:
     directions : the dominant directions
     """
 
+    heading: HeadingSource = "course"
     window: int = 5
     gate: float = math.radians(3.0)
     sigma: float = math.radians(2.0)
@@ -101,6 +105,7 @@ class JimenezParams:
     directions: DirectionParams = field(default_factory=DirectionParams)
 
     def __post_init__(self) -> None:
+        require_source("ihde-jimenez", self.heading)
         if self.window < 2:
             raise InputError(f"ihde-jimenez: window = {self.window}, expected at least 2 footfalls")
         for name in ("gate", "sigma", "scale"):
@@ -141,7 +146,7 @@ class Jimenez:
         self.params = params or JimenezParams()
         self.rows = [JimenezRow()]
         self._directions = Directions(self.params.directions)
-        self._headings: deque[float] = deque(maxlen=self.params.window)
+        self._steps = StepHeadings(self.params.heading, self.params.window)
 
     def __call__(self, step: Step) -> tuple[float, float] | None:
         """Innovation (rad, truth - estimate) and its standard deviation (rad), or None."""
@@ -149,13 +154,17 @@ class Jimenez:
         self.rows.append(row)
         return None if math.isnan(row.innovation) else (row.innovation, row.innovation_sd)
 
+    def applied(self, turned: float) -> None:
+        """The filter's heading was turned by `turned` (rad)."""
+        self._steps.applied(turned)
+
     def _judge(self, step: Step) -> JimenezRow:
         params = self.params
-        self._headings.append(step.heading)
-        if len(self._headings) < params.window:
+        heading, recent = self._steps(step), self._steps.recent
+        if heading is None or len(recent) < params.window:
             return JimenezRow()
-        mean = circular_mean(self._headings)
-        spread = max(abs(float(wrap(heading - mean))) for heading in self._headings)
+        mean = circular_mean(recent)
+        spread = max(abs(float(wrap(one - mean))) for one in recent)
         if spread >= params.gate:
             return JimenezRow(spread)
         self._directions.learn(mean)
@@ -164,4 +173,4 @@ class Jimenez:
             return JimenezRow(spread, 1.0)
         residual = nearest - mean
         sd = params.sigma * (1 + (residual / params.scale) ** 2)
-        return JimenezRow(spread, 1.0, nearest, residual, float(wrap(nearest - step.heading)), sd)
+        return JimenezRow(spread, 1.0, nearest, residual, float(wrap(nearest - heading)), sd)

@@ -12,8 +12,10 @@ from footfall.hdr.directions import DirectionParams
 from footfall.hdr.hde import Hde, Hde2010Params, HdeParams
 from footfall.hdr.hdr import HdrParams
 from footfall.hdr.ihde import Ihde, IhdeParams
+from footfall.hdr.ihde_plus import IhdePlus, IhdePlusParams
 from footfall.hdr.jimenez import FilterHdr, Jimenez, JimenezParams
 from footfall.hdr.tracks import (
+    UNTOLD,
     Reckoning,
     corrected_track,
     hde_2010_track,
@@ -22,6 +24,7 @@ from footfall.hdr.tracks import (
     pdr_track,
     told,
 )
+from footfall.pdr.detectors import Shoe
 from footfall.pdr.ins import FilterSettings
 from footfall.pdr.pdr import PdrParams, StartPose
 from footfall.pdr.track import Track
@@ -48,12 +51,9 @@ class Method:
 
 
 def _counted(reckoning: Reckoning) -> DirectionParams:
-    """Dominant directions, counted from the heading at the start unless they are told.
-
-    That heading is 0 deg in the papers. So the foot may point beside the path: at the start it does so as
-    much as later.
-    """
-    return reckoning.directions or DirectionParams(reference=reckoning.start.heading)
+    """Dominant directions, counted from that in which the walk sets out unless they are told."""
+    told = reckoning.directions
+    return told if told.reference is not None else replace(told, reference=reckoning.setting_out)
 
 
 def _hde(reckoning: Reckoning) -> Hde:
@@ -65,11 +65,20 @@ def _ihde(reckoning: Reckoning) -> Ihde:
 
 
 def _learning(reckoning: Reckoning) -> Ihde:
-    return Ihde(IhdeParams(fallback=False, directions=replace(_counted(reckoning), reference=None)))
+    return Ihde(IhdeParams(fallback=False, directions=replace(reckoning.directions, reference=None)))
 
 
 def _jimenez(reckoning: Reckoning) -> Jimenez:
     return Jimenez(JimenezParams(directions=_counted(reckoning)))
+
+
+def _plus(reckoning: Reckoning) -> IhdePlus:
+    return IhdePlus(IhdePlusParams(directions=_counted(reckoning)))
+
+
+def on_papers_filter(reckoning: Reckoning) -> Reckoning:
+    """The same recording with the paper's detector, the GLRT (Deng et al. 2018, Eq. 14 to 19)."""
+    return replace(reckoning, pdr=replace(reckoning.pdr, detector=Shoe()))
 
 
 METHODS: Mapping[str, Method] = MappingProxyType(
@@ -90,8 +99,8 @@ METHODS: Mapping[str, Method] = MappingProxyType(
             ),
             Method(
                 "iez-paper",
-                "IEZ as in Deng et al. (2018): zero velocity at every still sample",
-                lambda r: iez_track(r, FilterSettings.paper(), name="iez-paper"),
+                "IEZ as in Deng et al. (2018): zero velocity at every sample that is still by the GLRT",
+                lambda r: iez_track(on_papers_filter(r), FilterSettings.paper(), name="iez-paper"),
             ),
             Method(
                 "hdr-filter",
@@ -129,15 +138,25 @@ METHODS: Mapping[str, Method] = MappingProxyType(
                 directions="all",
             ),
             Method(
+                "ihde-plus",
+                "iez, and IHDE+: dominant directions as far as straight and direction are likely",
+                lambda r: corrected_track(r, _plus(r), name="ihde-plus"),
+                directions="all",
+            ),
+            Method(
                 "hde-paper",
                 "hde on the filter of iez-paper",
-                lambda r: corrected_track(r, _hde(r), FilterSettings.paper(), name="hde-paper"),
+                lambda r: corrected_track(
+                    on_papers_filter(r), _hde(r), FilterSettings.paper(), name="hde-paper"
+                ),
                 directions="all",
             ),
             Method(
                 "ihde-paper",
                 "ihde on the filter of iez-paper",
-                lambda r: corrected_track(r, _ihde(r), FilterSettings.paper(), name="ihde-paper"),
+                lambda r: corrected_track(
+                    on_papers_filter(r), _ihde(r), FilterSettings.paper(), name="ihde-paper"
+                ),
                 directions="all",
             ),
         )
@@ -152,9 +171,7 @@ def require_methods(names: Iterable[str]) -> None:
             raise InputError(f"method {name!r} is unknown, expected one of {', '.join(METHODS)}")
 
 
-def told_directions(
-    name: str, directions: int | None, reference: float | None, start: StartPose
-) -> DirectionParams | None:
+def told_directions(name: str, directions: int | None, reference: float | None) -> DirectionParams:
     """The dominant directions that a method is told: how many, and one of them (rad); None for untold.
 
     Raises
@@ -163,15 +180,14 @@ def told_directions(
         The method goes by none or learns what it is told; or there can be no such directions.
     """
     if directions is None and reference is None:
-        return None
+        return UNTOLD
     takes = METHODS[name].directions
     if takes == "none":
         able = ", ".join(method.name for method in METHODS.values() if method.directions != "none")
         raise InputError(f"method {name!r} goes by no dominant directions; these do: {able}")
     if takes == "count" and reference is not None:
         raise InputError(f"method {name!r} learns where its dominant directions are, and cannot be told one")
-    counted = DirectionParams(reference=start.heading if reference is None else reference)
-    return counted if directions is None else replace(counted, count=directions)
+    return DirectionParams(UNTOLD.count if directions is None else directions, reference)
 
 
 def tracks(reckoning: Reckoning, methods: Iterable[str]) -> dict[str, Track]:

@@ -7,7 +7,7 @@ from functools import cached_property
 
 from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams
-from footfall.hdr.tracks import Reckoning
+from footfall.hdr.tracks import UNTOLD, Reckoning
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.pdr import StartPose
 from footfall.recording import Recording
@@ -26,7 +26,7 @@ class StreamedReckoning(Reckoning):
         self,
         run_through: Callable[[], Footfalls],
         start: StartPose,
-        directions: DirectionParams | None = None,
+        directions: DirectionParams = UNTOLD,
     ) -> None:
         vars(self).update(run_through=run_through, start=start, directions=directions)
 

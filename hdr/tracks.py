@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -24,6 +25,11 @@ from footfall.pdr.pdr import Detected, PdrParams, StartPose, dead_reckon, detect
 from footfall.pdr.track import Track
 from footfall.recording import Recording
 
+SETTING_OUT = 5.0  # m; sooner, the first strides' swaying counts, later the drift
+UNTOLD = DirectionParams(reference=None)
+# What a filter whose heading is corrected may believe of the gyro: that tells it what a rest does not.
+GUIDED = FilterSettings(gyro_bias_sd=math.radians(0.3))
+
 # A plain dict: tracks travel between processes, and a mapping proxy cannot be pickled.
 HDR_UNITS: Mapping[str, str] = {
     "raw_rate": "rad/s",
@@ -40,18 +46,27 @@ class Reckoning:
 
     Attributes
     ----------
-    directions : that a method goes by that goes by any; None for four from the heading at the start
+    directions : that a method goes by that goes by any; without a reference, one of them is that in which the
+        walk sets out
     """
 
     recording: Recording
     start: StartPose = field(default_factory=StartPose)
     pdr: PdrParams = field(default_factory=PdrParams)
-    directions: DirectionParams | None = None
+    directions: DirectionParams = UNTOLD
 
     @cached_property
     def footfalls(self) -> Footfalls:
         """Dead reckoning of the recording."""
         return dead_reckon(self.recording, self.pdr, self.start, self.detected)
+
+    @cached_property
+    def setting_out(self) -> float:
+        """Direction in which the first 5 m of the walk lead (rad)."""
+        x, y = (self.footfalls.position[:, :2] - self.footfalls.position[0, :2]).T
+        far = np.hypot(x, y) >= SETTING_OUT
+        row = int(np.argmax(far)) if far.any() else -1
+        return math.atan2(y[row], x[row])
 
     @cached_property
     def detected(self) -> Detected:
@@ -165,7 +180,7 @@ def corrected_track(
     Parameters
     ----------
     corrector : a new one; it remembers what it was asked
-    settings : of the filter
+    settings : of the filter; None for `GUIDED`
     name : of the method, for the track's provenance
 
     Returns
@@ -173,7 +188,7 @@ def corrected_track(
     Track
         Evidence: the filter's and, in the method's own `units`, what it saw and did.
     """
-    settings = settings or FilterSettings()
+    settings = settings or GUIDED
     filtered = reckoning.filtered(settings, corrector)
     evidence = dict(zip(corrector.units, np.array(corrector.rows, dtype=float).T, strict=True))
     track = filter_track(filtered, settings, name=name, evidence=evidence, units=corrector.units)

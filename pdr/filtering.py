@@ -39,6 +39,7 @@ class Step:
     stride_time : s since the footfall before
     still_time : s that the foot is at rest around this footfall
     position : (3,) m
+    stride : (3,) m, displacement from the footfall before, as that was after its correction
     """
 
     index: int
@@ -47,13 +48,15 @@ class Step:
     stride_time: float
     still_time: float
     position: np.ndarray
+    stride: np.ndarray
 
 
 class Corrector(Protocol):
     """A heading method: asked once a footfall, in order.
 
     Returns the innovation (rad, truth - estimate: what to add to the heading) and its standard deviation
-    (rad), or None where it knows nothing.
+    (rad), or None where it knows nothing. A corrector that has a method `applied(turned)` is told after each
+    correction by how much (rad) it turned the filter's heading, to turn by the same what it remembers.
     """
 
     def __call__(self, step: Step) -> tuple[float, float] | None: ...
@@ -128,6 +131,7 @@ def run_filter(
     kept: list[InertialFilter] = []
     nodes = [Node.first(now)] if smooth else []  # one a reset; the first is the rest
     heading, innovation = start.heading, np.full(len(stances.footfalls), np.nan)
+    applied = getattr(corrector, "applied", lambda turned: None)
     for i, footfall in enumerate(stances.footfalls):
         for reset in range(stances.footfalls[i - 1] + 1 if i else 1, footfall + 1):
             rows = slice(resets[reset - 1] + 1, resets[reset] + 1)
@@ -137,11 +141,17 @@ def run_filter(
                 now.advance(recording.t[rows], recording.gyro[rows], recording.accel[rows], update[rows])
         heading += float(wrap(now.heading - heading))
         if i > 0 and corrector is not None:
-            said = corrector(Step(i, now.t, heading, now.t - kept[-1].t, float(still_time[i]), now.position))
+            before = kept[-1]
+            stride = now.position - before.position
+            said = corrector(
+                Step(i, now.t, heading, now.t - before.t, float(still_time[i]), now.position, stride)
+            )
             if said is not None:
                 innovation[i] = said[0]
                 put_right = now.correct_heading(*said)
-                heading += float(wrap(now.heading - heading))
+                turned = float(wrap(now.heading - heading))
+                heading += turned
+                applied(turned)
                 if smooth:
                     nodes[-1] = nodes[-1].with_also(put_right, now)
         kept.append(now.snapshot())

@@ -13,9 +13,10 @@ from functools import partial
 from typing import Any
 
 from footfall.errors import InputError
+from footfall.hdr.directions import DirectionParams
 from footfall.hdr.methods import Reckoning, require_methods, tracks
 from footfall.models.imu import draw_unit, load_spec
-from footfall.pdr.pdr import StartPose
+from footfall.pdr.pdr import PdrParams, StartPose
 from footfall.pdr.track import Track
 from footfall.recording import Recording
 from footfall.scenarios.scenario import Scenario
@@ -80,8 +81,28 @@ class Result:
 
 
 def start_pose(walk: Walk, bias_s: float = BIAS_TIME) -> StartPose:
-    """The known start: the IMU's true pose at rest, at the last sample of the first `bias_s` seconds."""
+    """The known start: the IMU's true pose at rest, at the last sample of the first `bias_s` seconds.
+
+    Raises
+    ------
+    InputError
+        The walk does not stand still for so long.
+    """
+    if bias_s > walk.calibration_s:
+        raise InputError(
+            f"start: the walk stands still for {walk.calibration_s:g} s, less than the {bias_s:g} s of T_bias"
+        )
     return StartPose(*walk.pose_at_rest(bias_s))
+
+
+def reckoning(scenario: Scenario, walk: Walk, recording: Recording) -> Reckoning:
+    """A recording and what a run tells of it: start pose, T_bias, and the direction of the path's begin."""
+    return Reckoning(
+        recording,
+        start_pose(walk, scenario.bias_time),
+        PdrParams(bias_s=scenario.bias_time),
+        DirectionParams(reference=float(scenario.path.route.heading[0])),
+    )
 
 
 def perform(task: Task, on_progress: Callable[[float, int], None] | None = None) -> Result:
@@ -102,20 +123,30 @@ def perform(task: Task, on_progress: Callable[[float, int], None] | None = None)
     report, length = on_progress or (lambda metres, units: None), plan.route.length
     walk = cached_walk(plan, use_cache=task.use_cache, on_progress=lambda metres: report(metres, 0))
     spec = load_spec(task.imu)
-    start = start_pose(walk)
 
     air = scenario.temperature_of(task.number)
     recording, budget = record_with_budget(
-        walk, draw_unit(spec, task.unit_seed), seed=task.noise_seed, temperature=air
+        walk,
+        draw_unit(spec, task.unit_seed),
+        seed=task.noise_seed,
+        temperature=air,
+        bias_shift=scenario.unit_bias_shift(task.unit_seed),
+        bias_time=scenario.bias_time,
     )
-    made = tracks(Reckoning(recording, start), task.methods)
+    made = tracks(reckoning(scenario, walk, recording), task.methods)
 
     seeds = [*((unit, unit) for unit in task.others), *((task.unit_seed, noise) for noise in task.noises)]
     further = []
     for count, (unit, noise) in enumerate(seeds, start=1):
         report(length, count)
-        other = record(walk, draw_unit(spec, unit), seed=noise, temperature=air)
-        found = tracks(Reckoning(other, start), task.methods)
+        other = record(
+            walk,
+            draw_unit(spec, unit),
+            seed=noise,
+            temperature=air,
+            bias_shift=scenario.unit_bias_shift(unit),
+        )
+        found = tracks(reckoning(scenario, walk, other), task.methods)
         further.append({name: score(track, walk) for name, track in found.items()})
     others, noises = further[: len(task.others)], further[len(task.others) :]
     scores = {name: score(track, walk) for name, track in made.items()}
@@ -145,10 +176,10 @@ def tasks(
     """
     require_methods(methods)
     load_spec(imu or scenario.imu)
-    if scenario.calibration < BIAS_TIME:
+    if scenario.calibration < scenario.bias_time:
         raise InputError(
             f"{scenario.name}: sensor.calibration_s = {scenario.calibration:g}: "
-            f"a run averages the static bias over {BIAS_TIME:g} s at rest"
+            f"a run averages the static bias over sensor.bias_time_s = {scenario.bias_time:g} s at rest"
         )
     count = scenario.walks if walks is None else walks
     base = scenario.seed if seed is None else seed

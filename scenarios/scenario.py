@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,6 +19,7 @@ from footfall.models.subject import SHOES, SUBJECTS, Subject
 from footfall.scenarios.path import Path, PathSpec, build_path
 from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height
 from footfall.simulate.journey import PHYSICS_STEP, Plan
+from footfall.simulate.record import BIAS_TIME
 from footfall.simulate.steer import Pace, Stop
 from footfall.simulate.truth import divisor
 from footfall.toml import Strict, read_toml
@@ -115,12 +117,18 @@ TemperatureEntry = Annotated[
 
 
 class SensorTable(Strict):
-    """What is on the shoe: `imu` is a stock name or a data sheet's path relative to the scenario's file."""
+    """What is on the shoe: `imu` is a stock name or a data sheet's path relative to the scenario's file.
+
+    `bias_time_s` is T_bias. `bias_shift_deg_s` is a gyro bias about the vertical that appears with the first
+    step; left for units of odd seeds and right for others.
+    """
 
     imu: Annotated[str, Field(min_length=1)]
     mount: str = "instep"
     rate_hz: float = Field(200.0, ge=50)
     calibration_s: float = Field(30.0, ge=0, le=600)
+    bias_time_s: float = Field(BIAS_TIME, gt=0, le=600)
+    bias_shift_deg_s: float = Field(0.0, ge=0, le=10)
 
 
 class SeedTable(Strict):
@@ -176,6 +184,8 @@ class Scenario:
     mount : name of a mounting on the shoe
     rate_hz : of truth and recording
     calibration : s of standing before the first footfall
+    bias_time : s, T_bias: of it, over which the static bias is averaged
+    bias_shift : rad/s, gyro bias about the vertical that appears with the first step
     seed : of walk 0; walks : how many by default
     units : seeds of sensors, used in turn; None: each walk's own seed
     """
@@ -202,6 +212,8 @@ class Scenario:
     mount: str
     rate_hz: float
     calibration: float
+    bias_time: float
+    bias_shift: float
     seed: int
     walks: int
     units: tuple[int, ...] | None
@@ -218,6 +230,10 @@ class Scenario:
     def temperature_of(self, walk: int) -> TemperatureProfile:
         """What the sensor goes through on walk number `walk` (from 0)."""
         return self.temperatures[walk % len(self.temperatures)]
+
+    def unit_bias_shift(self, unit_seed: int) -> float:
+        """The bias shift (rad/s, left positive) of a unit: its seed decides the side."""
+        return self.bias_shift if unit_seed % 2 else -self.bias_shift
 
     def plan(self, walk: int) -> Plan:
         """What the simulator needs for walk number `walk` (from 0)."""
@@ -305,6 +321,8 @@ def _scenario(file: File, content: ScenarioFile) -> Scenario:
         mount=sensor.mount,
         rate_hz=sensor.rate_hz,
         calibration=sensor.calibration_s,
+        bias_time=sensor.bias_time_s,
+        bias_shift=math.radians(sensor.bias_shift_deg_s),
         seed=seeds.base,
         walks=seeds.walks,
         units=seeds.units,

@@ -7,6 +7,7 @@ from collections.abc import Collection
 from dataclasses import asdict
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from footfall.identity import WALK, digest_of
 from footfall.models.imu import ROOM, Channel, ImuUnit, TemperatureProfile, TriadUnit, stages
@@ -25,6 +26,7 @@ def record(
     seed: int,
     temperature: TemperatureProfile = ROOM,
     without: Collection[str] = (),
+    bias_shift: float = 0.0,
 ) -> Recording:
     """What `unit` says of `walk`, sample for sample at the walk's rate.
 
@@ -34,6 +36,8 @@ def record(
     temperature : of the air; the unit is as warm as `temperature.start` at the walk's first sample
     without : names of effects to switch off (`footfall.models.imu.EFFECTS`), in gyros and accelerometers;
         the random draws of the others stay as they are
+    bias_shift : rad/s, a gyro bias about the vertical (left positive) of the standing IMU that appears when
+        the motionless start is over: no average over that can remove it
 
     Raises
     ------
@@ -41,8 +45,10 @@ def record(
         An effect that does not exist, or a seed that is no integer of 0 or more.
     """
     die = temperature.die(walk.t, unit.spec.thermal.time_constant)
-    gyro = _channel(walk, unit, "gyro", die, seed)
-    return _recording(walk, unit, _last(gyro, without), die, seed, temperature, without)
+    gyro = _last(_channel(walk, unit, "gyro", die, seed), without)
+    return _recording(
+        walk, unit, _shifted(gyro, walk, bias_shift), die, seed, temperature, without, bias_shift
+    )
 
 
 def record_with_budget(
@@ -52,6 +58,7 @@ def record_with_budget(
     seed: int,
     temperature: TemperatureProfile = ROOM,
     without: Collection[str] = (),
+    bias_shift: float = 0.0,
     bias_time: float = BIAS_TIME,
 ) -> tuple[Recording, DriftBudget]:
     """`record`, and which cause turned the heading by how much in each stride.
@@ -68,8 +75,19 @@ def record_with_budget(
     die = temperature.die(walk.t, unit.spec.thermal.time_constant)
     signals = dict(stages(_channel(walk, unit, "gyro", die, seed), without))
     gyro = signals[next(reversed(signals))]
-    recording = _recording(walk, unit, gyro, die, seed, temperature, without)
+    if bias_shift:
+        gyro = signals["bias_shift"] = _shifted(gyro, walk, bias_shift)
+    recording = _recording(walk, unit, gyro, die, seed, temperature, without, bias_shift)
     return recording, drift_budget(walk, signals, bias_time)
+
+
+def _shifted(gyro: np.ndarray, walk: Walk, bias_shift: float) -> np.ndarray:
+    """(n, 3) rad/s: the gyro with a bias about the vertical from the first step on."""
+    if not bias_shift:
+        return gyro
+    up = Rotation.from_quat(walk.quaternion[0], scalar_first=True).inv().apply([0.0, 0.0, bias_shift])
+    walking = walk.t - walk.t[0] > walk.calibration_s + 1e-6
+    return np.asarray(gyro + walking[:, None] * up)
 
 
 def _channel(walk: Walk, unit: ImuUnit, name: str, die: np.ndarray, seed: int) -> Channel:
@@ -96,6 +114,7 @@ def _recording(
     seed: int,
     temperature: TemperatureProfile,
     without: Collection[str],
+    bias_shift: float,
 ) -> Recording:
     position, heading = walk.pose_at_rest(BIAS_TIME)
     return Recording(
@@ -112,6 +131,7 @@ def _recording(
             "noise_seed": seed,
             "temperature": asdict(temperature),
             "without": sorted(without),
+            "bias_shift": bias_shift,
         },
     )
 

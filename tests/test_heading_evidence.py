@@ -108,6 +108,20 @@ def test_a_walk_round_a_circle_teaches_no_direction(count):
     assert found.reference is None
 
 
+@pytest.mark.parametrize(("agreement", "known"), [(0.72, True), (0.68, False)])
+def test_directions_are_learned_where_headings_agree(agreement, known):
+    """Two bundles that lie 2 x apart about 10 deg: the mean of exp(4 i heading) has the length cos 4 x."""
+    apart = math.acos(agreement) / 4
+    found = Directions(DirectionParams(reference=None))
+    for side in (-1, 1, -1, 1, -1, 1):
+        found.learn(10 * DEG + side * apart)
+    assert (found.reference is not None) == known
+    strict = Directions(DirectionParams(reference=None, learn_agreement=0.99))
+    for side in (-1, 1, -1, 1, -1, 1):
+        strict.learn(10 * DEG + side * apart)
+    assert strict.reference is None
+
+
 def test_a_learned_reference_is_the_weighted_one():
     resultant = (3 * folded(0.1, 4) + folded(0.1 + math.pi / 2, 4)) / 4
     reference, agreement = learned_reference(resultant, 4)

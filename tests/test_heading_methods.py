@@ -6,30 +6,29 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
-from synthetic_foot import footfalls, walk
+from synthetic_foot import footfalls
+from walked_steps import walked
 
 from footfall.conventions import wrap
 from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams, Directions
 from footfall.hdr.hde import Hde, Hde2010Params, HdeParams, hde_2010
 from footfall.hdr.ihde import Ihde, IhdeParams, evaluate, reference
+from footfall.hdr.ihde_plus import IhdePlus, IhdePlusParams
 from footfall.hdr.jimenez import FilterHdr, FilterHdrParams, Jimenez, JimenezParams
-from footfall.hdr.methods import METHODS, Reckoning, told_directions, tracks
-from footfall.hdr.tracks import corrected_track
-from footfall.pdr.filtering import Step, run_filter
-from footfall.pdr.ins import FilterSettings
-from footfall.pdr.pdr import StartPose
+from footfall.pdr.filtering import Step
 
 DEG = math.pi / 180
 T = 1.1
 
 
 def ask(corrector, headings, stride_time=T):
-    """Ask about footfalls 1.. with these headings (rad), 1.4 m apart; what it said."""
+    """Ask about strides of 1.4 m along these headings (rad), with the foot along them too; what it said."""
+    strides = [1.4 * np.array([math.cos(heading), math.sin(heading), 0.0]) for heading in headings]
+    places = np.cumsum(strides, axis=0)
     return [
-        corrector(Step(i, T * i, float(heading), stride_time, 0.4, np.array([1.4 * i, 0.0, 0.0])))
-        for i, heading in enumerate(headings, start=1)
+        corrector(Step(i, T * i, float(heading), stride_time, 0.4, place, stride))
+        for i, (heading, place, stride) in enumerate(zip(headings, places, strides, strict=True), start=1)
     ]
 
 
@@ -61,7 +60,7 @@ def test_on_a_straight_along_a_direction_the_innovation_leads_to_it():
         assert said[:4] == [None] * 4  # no window yet
         assert said[4] == pytest.approx((-3.1 * DEG, corrector.params.sigma))
         assert corrector.rows[5].dominant == 1
-        assert corrector.rows[5].reference == pytest.approx(quarter * 90 * DEG)
+        assert float(wrap(corrector.rows[5].reference - quarter * 90 * DEG)) == pytest.approx(0, abs=1e-9)
 
 
 @pytest.mark.parametrize("fallback", [True, False])
@@ -222,85 +221,37 @@ def test_ihde_is_silent_where_one_heading_stands_out():
     assert corrector.rows[-1].spread == pytest.approx(8 * DEG, abs=0.1 * DEG)
 
 
-# In the filter
+@pytest.mark.parametrize(
+    ("corrector", "sigma"), [(Hde, 12), (Ihde, 4), (Jimenez, 2), (FilterHdr, math.degrees(0.1))]
+)
+def test_how_far_each_is_trusted_unless_told(corrector, sigma):
+    assert ask(corrector(), np.zeros(8))[-1][1] == pytest.approx(sigma * DEG)
 
 
-@pytest.fixture(scope="module")
-def corridor():
-    """Two straights and a corner, and a gyro that drifts by 0.1 deg/s about the vertical."""
-    scatter = 0.7 * DEG * np.random.default_rng(2).standard_normal(120)
-    scatter[0] = 0.0
-    truth = walk(np.repeat([0, 90], 60) * DEG + scatter)
-    up = Rotation.from_quat(truth.quaternion, scalar_first=True).inv().apply([0, 0, 1])
-    return truth, truth.recording(gyro_error=np.where(truth.t[:, None] > 25, 0.1 * DEG * up, 0.0))
+@pytest.mark.parametrize(
+    ("corrector", "params"),
+    [(Hde, HdeParams), (Ihde, IhdeParams), (Jimenez, JimenezParams), (IhdePlus, IhdePlusParams)],
+)
+@pytest.mark.parametrize("source", ["yaw", "course", "both"])
+def test_each_goes_by_the_heading_that_it_is_told(corrector, params, source):
+    """Along a corridor by a foot that points 4 deg outwards: the yaw alone takes that for an error."""
+    made = corrector(params(heading=source))
+    said = [made(step) for step in walked(np.zeros(12), 4 * DEG)]
+    assert said[-1][0] == pytest.approx(-4 * DEG if source == "yaw" else 0.0, abs=1e-9)
+    assert made.params.heading == source
+    assert params().heading == "course"
 
 
-@pytest.mark.parametrize("method", ["hdr-filter", "hde-2010", "hde", "ihde", "ihde-learned", "ihde-jimenez"])
-def test_every_method_takes_drift_out_of_a_corridor(corridor, method):
-    truth, recording = corridor
-    found = tracks(Reckoning(recording), ["iez", method])
-    error = {name: np.abs(one.heading - truth.heading(one.t)) for name, one in found.items()}
-    assert error["iez"][-1] == pytest.approx(0.1 * DEG * (found["iez"].t[-1] - 25), rel=0.1)
-    # HDR knows no direction: it can only slow the drift down, the others can take it back.
-    assert error[method][-1] < (0.9 if method == "hdr-filter" else 0.35) * error["iez"][-1]
-
-
-@pytest.mark.parametrize("corrector", [Hde, Ihde, Jimenez])
-def test_a_wrong_start_is_put_right(corridor, corrector):
-    """The sign: an error of +4 deg shrinks."""
-    truth, _ = corridor
-    settings = FilterSettings(heading_sd=4 * DEG)
-    filtered = run_filter(
-        truth.recording(), settings, start=StartPose(heading=4 * DEG), corrector=corrector()
-    )
-    error = filtered.footfalls.heading - truth.heading(filtered.footfalls.t)
-    assert error[0] == pytest.approx(4 * DEG)
-    assert np.abs(error[40:59]).max() < 2 * DEG
-
-
-@pytest.mark.parametrize("corrector", [Hde, Ihde, FilterHdr, Jimenez])
-def test_the_record_has_a_row_a_footfall_and_is_what_the_filter_was_told(corridor, corrector):
-    asked = corrector()
-    one = corrected_track(Reckoning(corridor[1]), asked, name="mine")
-    filtered = run_filter(corridor[1], corrector=corrector())
-    assert set(asked.units) <= set(one.evidence)
-    assert all(len(one.evidence[name]) == len(one) for name in asked.units)
-    np.testing.assert_array_equal(one.evidence["innovation"], filtered.innovation)
-    assert one.meta["params"]["sigma"] == asked.params.sigma
-
-
-@pytest.mark.parametrize("name", METHODS)
-def test_directions_turn_with_the_start(corridor, name):
-    """Corridors are counted from the heading at the start: turn the building, and the track turns with it."""
-    by = 33 * DEG
-    start = [Reckoning(corridor[1], StartPose(heading=heading)) for heading in (0.0, by)]
-    straight, turned = (tracks(one, [name])[name] for one in start)
-    np.testing.assert_allclose(turned.heading - by, straight.heading, atol=1e-6)
-
-
-def told_heading(recording, name, directions=None, reference=None):
-    start = StartPose(heading=20 * DEG)
-    told = told_directions(name, directions, reference, start)
-    return tracks(Reckoning(recording, start, directions=told), [name])[name].heading
-
-
-@pytest.mark.parametrize("name", [method.name for method in METHODS.values() if method.directions == "all"])
-def test_directions_can_be_told(corridor, name):
-    """Any one of the directions stands for all; without one they count from the heading at the start."""
-    untold = told_heading(corridor[1], name)
-    np.testing.assert_allclose(told_heading(corridor[1], name, 4, 110 * DEG), untold, atol=1e-9)
-    eight = told_heading(corridor[1], name, 8)
-    np.testing.assert_allclose(told_heading(corridor[1], name, 8, -25 * DEG), eight, atol=1e-9)
-    if name != "ihde-paper":  # whose filter here turns away from all of them at once
-        beside = told_heading(corridor[1], name, reference=23 * DEG)  # corridors turned by 3 deg
-        assert np.abs(beside - untold).max() > 0.3 * DEG
-
-
-def test_the_directions_that_are_learned_can_be_counted(corridor):
-    """Three corridors 120 deg apart are not those of this building."""
-    four, three = (told_heading(corridor[1], "ihde-learned", count) for count in (4, 3))
-    np.testing.assert_array_equal(four, told_heading(corridor[1], "ihde-learned"))
-    assert np.abs(three - four).max() > 0.3 * DEG
+@pytest.mark.parametrize("corrector", [Ihde, Jimenez, IhdePlus])
+def test_headings_before_a_correction_are_no_scatter(corrector):
+    """The filter is put right by 10 deg on a straight: a method that is told of it sees one straight."""
+    made = corrector()
+    for step in walked(np.full(12, -10 * DEG)):
+        made(step)
+    made.applied(10 * DEG)
+    after = [made(step) for step in walked(np.zeros(3))]
+    assert after[0] is not None
+    assert after[0][0] == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.parametrize(

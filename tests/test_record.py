@@ -133,6 +133,32 @@ def test_bad_arguments_are_refused(walk, nimu, arguments):
         record(walk, nimu, **arguments)
 
 
+# A bias that no rest can remove
+
+
+@pytest.mark.parametrize("shift_deg_s", [0.2, -0.1])
+def test_a_bias_shift_turns_the_heading_from_the_first_step_on(walk, shift_deg_s):
+    """As the IMU stands it is about the vertical, and in no sample of the rest."""
+    unit, shift = draw_unit(load_spec("perfect"), 0), np.radians(shift_deg_s)
+    plain, shifted = record(walk, unit, seed=0), record(walk, unit, seed=0, bias_shift=shift)
+    added = shifted.gyro - plain.gyro
+    standing = plain.t <= walk.calibration_s + 1e-9
+    assert not added[standing].any()
+    up = Rotation.from_quat(walk.quaternion[0], scalar_first=True).apply(added[~standing])
+    np.testing.assert_allclose(up, np.tile([0.0, 0.0, shift], (len(up), 1)), atol=1e-15)
+    np.testing.assert_array_equal(shifted.accel, plain.accel)
+    assert (plain.meta["bias_shift"], shifted.meta["bias_shift"]) == (0.0, shift)
+
+
+def test_a_bias_shift_is_a_cause_of_drift(walk, nimu):
+    shift = np.radians(0.2)
+    recording, budget = record_with_budget(walk, nimu, seed=1, bias_shift=shift)
+    assert recording.gyro.tobytes() == record(walk, nimu, seed=1, bias_shift=shift).gyro.tobytes()
+    assert tuple(budget.causes) == (*EFFECTS, "bias_shift")
+    # The foot pitches and rolls in swing: a body vector is about the vertical for most of a stride only.
+    assert 0.7 * shift < np.median(budget.causes["bias_shift"]) <= shift
+
+
 # The drift budget
 
 

@@ -1,6 +1,7 @@
 """`footfall run`: what it computes, prints and leaves in its folder."""
 
 import json
+import math
 import os
 from dataclasses import replace
 
@@ -19,6 +20,7 @@ from footfall.scenarios.run import (
     OTHER_UNITS_FROM,
     perform,
     perform_all,
+    reckoning,
     start_pose,
     tasks,
 )
@@ -121,6 +123,29 @@ def test_the_drift_budget_explains_the_uncorrected_heading(done):
     np.testing.assert_allclose(sum(done.budget.causes.values()), done.budget.total, atol=1e-12)
     turned = np.degrees(np.sum(done.budget.total * done.budget.interval))
     assert abs(turned) == pytest.approx(done.scores["pdr"].heading_error_final_deg, abs=0.5)
+
+
+def test_a_run_tells_rest_shift_and_the_paths_direction(workshop):
+    """Ten of 26 s of rest are averaged, the unit's bias shifts afterwards, and the path begins along x."""
+    scenario = replace(
+        load_scenario(workshop / "short.toml"), bias_time=10.0, bias_shift=math.radians(0.3), imu="perfect"
+    )
+    (task, *_) = tasks(scenario, walks=1, methods=["pdr", "ihde"])
+    result = perform(task)
+    shift = scenario.unit_bias_shift(task.unit_seed)
+    assert result.recording.meta["bias_shift"] == shift
+    assert np.sign(result.budget.total.mean()) == np.sign(shift)
+    walked = result.tracks["pdr"].t[-1] - 26
+    assert result.scores["pdr"].heading_error_final_deg == pytest.approx(0.3 * walked, rel=0.3)
+    told = reckoning(scenario, result.walk, result.recording)
+    assert (told.pdr.bias_s, told.directions.reference) == (10.0, 0.0)
+    assert told.start == start_pose(result.walk, 10.0)
+    assert result.tracks["ihde"].meta["params"]["directions"]["reference"] == 0.0
+
+
+def test_a_start_that_is_no_rest_is_refused(done):
+    with pytest.raises(InputError, match=r"stands still for 26 s, less than the 27 s of T_bias"):
+        start_pose(done.walk, 27.0)
 
 
 def test_progress_runs_to_the_end_of_the_path_and_through_the_units(workshop):

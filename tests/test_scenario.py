@@ -210,7 +210,7 @@ def test_a_users_file_works_as_a_stock_name_does(own):
     assert scenario.subjects[1].mass_kg == 80
     assert [scenario.plan(walk).seed for walk in range(scenario.walks)] == [40, 41, 42]
     assert [scenario.unit_seed(walk) for walk in range(4)] == [7, 9, 7, 9]
-    assert scenario.calibration == 30
+    assert (scenario.calibration, scenario.bias_time, scenario.bias_shift) == (30, 25, 0)
     without = load_scenario(own(("units = [7, 9]", "")))
     assert [without.unit_seed(walk) for walk in range(3)] == [40, 41, 42]
 
@@ -221,6 +221,23 @@ def test_temperatures_are_used_in_turn_and_one_serves_every_walk(own):
     more = "[[temperature]]\nindoors_degC = 19.0\noutdoors_degC = -4.0\n[sensor]"
     scenario = load_scenario(own(("[temperature]", "[[temperature]]"), ("[sensor]", more)))
     assert [scenario.temperature_of(walk) for walk in range(4)] == [warm, cold, warm, cold]
+
+
+def test_the_side_of_a_bias_shift_is_its_units(own):
+    keys = 'imu = "nimu"\nbias_time_s = 4.0\nbias_shift_deg_s = 0.2'
+    scenario = load_scenario(own(('imu = "nimu"', keys)))
+    assert scenario.bias_time == 4
+    assert [scenario.unit_bias_shift(seed) for seed in (7, 8)] == pytest.approx(np.radians([0.2, -0.2]))
+
+
+@pytest.mark.parametrize("name", IHDE_NAMES)
+def test_the_ihde_papers_walks_rest_for_five_seconds_with_the_imu_on_the_left_foot(name):
+    scenario = load_scenario(name)
+    assert (scenario.calibration, scenario.bias_time) == (5, 5)
+    assert scenario.plan(0).mount.foot == "left"
+    assert scenario.bias_shift == pytest.approx(
+        np.radians({"ihde-test1": 0.215, "ihde-test2": 0.108, "ihde-test3": 0.047}[name])
+    )
 
 
 @pytest.mark.parametrize("name", stock_scenarios())
