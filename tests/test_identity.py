@@ -85,7 +85,8 @@ class Two:
 
 def test_a_digest_is_of_content_and_of_all_of_it():
     contents = [
-        (1.0, 2.0), ((1.0,), 2.0), (1.0, (2.0,)), 12, "12", ("1", "2"), ("12", ""), b"12", None, True, 1, 1.0,
+        (1.0, 2.0), ((1.0,), 2.0), (1.0, (2.0,)), 12, "12", ("1", "2"), ("12", ""), b"12", 3132, (12, 3),
+        (1, 23), None, True, 1, 1.0,
         np.zeros(2), np.zeros((2, 1)), np.zeros(2, dtype=np.float32), np.arange(3000), np.arange(3000) % 2999,
         {"a": 1}, {"b": 1}, {"a": (1.0, 2.0)}, One(), Two(), One((1.0, 2.5)), float("nan"), float("inf"),
     ]  # fmt: skip
