@@ -131,7 +131,7 @@ def test_a_recording_that_knows_no_start_starts_at_the_origin(meta):
 
 
 # Heading (deg) at any footfall that a perfect IMU on a walk with one corner may cost.
-WORTH = {"pdr": 0.1, "iez": 0.1, "iez-smoothed": 0.1, "hdr-basic": 2.0, "hdr-filter": 2.0}
+WORTH = {"pdr": 0.1, "iez": 0.1, "iez-smoothed": 0.1, "hdr-basic": 2.0, "hdr-filter": 3.0}
 
 
 def test_with_a_perfect_imu_a_track_needs_no_alignment(short_walk):
@@ -151,7 +151,8 @@ def test_with_a_perfect_imu_a_track_needs_no_alignment(short_walk):
         assert off[0] < (0.03 if name.endswith("-paper") else 0.01), name
         assert error.max() < WORTH.get(name, 12.0), name
         if name in ("pdr", "iez", "iez-smoothed"):
-            assert off.max() < 0.003 * walked, name
+            # The sole rolls sideways by some mm/s when the velocity is called zero: 2 mrad of the course.
+            assert off.max() < 0.004 * walked, name
             assert abs(score(track, short_walk).distance_error_pct) < 0.3, name
     assert error_without_a_start(recording, short_walk) > 1.0  # the feet stand turned: the start is no zero
 
