@@ -71,7 +71,13 @@ def test_only_holes_between_the_first_reset_and_the_last_matter(hole, bridged):
             refuse_gaps(t, 10, 20, 0.25)
 
 
-def test_a_hole_before_the_bias_time_is_over_does_not_matter():
-    late = np.where(T > 0.5, T + 0.3, T)
-    found = detect(Recording(late, still().gyro, still().accel), PdrParams(bias_s=1.0, detector=Spy()))
-    assert len(found.stances.footfalls) == 4
+@pytest.mark.parametrize(("at", "refused"), [(0.5, False), (1.5, True), (4.2, True), (6.0, False)])
+def test_holes_in_any_stride_are_refused_and_elsewhere_they_do_not_matter(at, refused):
+    """Rest until 1 s, footfalls at 2.5, 3.6 and 4.7 s."""
+    recording = Recording(np.where(at < T, T + 0.3, T), still().gyro, still().accel)
+    if refused:
+        with pytest.raises(InputError, match=rf"no samples for 0\.305 s after t = {at:g} s"):
+            detect(recording, PdrParams(bias_s=1.0, detector=Spy()))
+    else:
+        found = detect(recording, PdrParams(bias_s=1.0, detector=Spy()))
+        assert len(found.stances.footfalls) == 4
