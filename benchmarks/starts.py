@@ -1,15 +1,15 @@
 """How still does a loaded foot lie when a walker sets out and at its last step before a stop?
 
-Drawn people stand, walk 6 m, stand for 5 s, walk on for 6 m and stand again, on level ground and on slopes, with
-the physics of the walks. Twist and pitch of a foot are its body's yaw and elevation relative to its pose at
-rest, the largest over all samples (1 kHz) in which it carries at least 0.2 body weights:
+Drawn people stand, walk 6 m, stand for 5 s, walk on for 6 m and stand again, on level ground and on slopes,
+with the physics of the walks. Twist and pitch of a foot are its body's yaw and elevation relative to its pose
+at rest, the largest over all samples (1 kHz) in which it carries at least 0.2 body weights:
 
 - setting out: from the wish to walk until the foot leaves the ground for its first swing (less than 0.2 body
-  weights for 0.1 s), and for the foot that stands first until the other one has landed. Heels rise when
-  people push off: toes-down counts until the last rise of the heel begins (the last run of samples in which the
-  toes only sink), toes-up and twist to the end;
-- last step: from the moment at which the foot, after its last landing (0.05 body weights), first lies within 3 deg
-  of its pose at rest until the end of the stand.
+  weights for 0.1 s), and for the foot that stands first until the other one has landed. Heels rise in
+  push-off: toes-down counts until the last rise of the heel begins (the last run of samples in which the toes
+  only sink), toes-up and twist to the end;
+- last step: from the moment at which the foot, after its last landing (0.05 body weights), first lies within
+  3 deg of its pose at rest until the end of the stand.
 
 python benchmarks/starts.py --people 10
 """
@@ -50,7 +50,7 @@ _SET_OUT_S, _STOPPING_S = 2.0, 4.0  # windows: from the wish to walk on, and bef
 
 @dataclass(frozen=True)
 class Moved:
-    """A foot's largest twist, toes-up and toes-down (deg); `first`: of the foot that swung first, or landed last."""
+    """A foot's largest twist, toes-up and toes-down (deg); `first`: it swung first, or landed last."""
 
     kind: str
     side: str

@@ -191,6 +191,8 @@ def build_body(
     for side in "rl":
         _add_arm(torso, side, build)
 
+    _keep_shoes_apart(spec)
+
     for name, servo in SERVOS.items():
         actuator = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
         actuator.set_to_position(kp=servo.kp, kv=servo.kv)
@@ -342,6 +344,13 @@ def _add_leg(pelvis: mujoco.MjsBody, side: str, build: Build) -> None:
             **hidden,
         )
     toe.add_site(name=f"toe_{side}", pos=[0.055, 0, 0], size=[0.04, 0.06, 0.04], **hidden)
+
+
+def _keep_shoes_apart(spec: mujoco.MjSpec) -> None:
+    """Shoes push each other aside, without friction: they do not pass through each other."""
+    for right in ("sole_in_r", "toe_r"):
+        for left in ("sole_in_l", "toe_l"):
+            spec.add_pair(geomname1=right, geomname2=left, condim=1, solref=[0.008, 1.0])
 
 
 def _add_arm(torso: mujoco.MjsBody, side: str, build: Build) -> None:

@@ -27,7 +27,8 @@ class Build:
     thigh, shank, hip_width, foot : lengths
     trunk_mass, leg_mass : masses
     friction : sliding friction of the shoe on the ground
-    sole_time : s, time constant of the sole's contact (MuJoCo solref[0]); smaller is harder
+    sole_time : s of the simulated body, time constant of the sole's contact (MuJoCo solref[0]); smaller is
+        harder
     """
 
     thigh: float = 1.0
@@ -123,7 +124,8 @@ class Subject:
         """The body that is simulated."""
         excess = self.mass_kg / (REFERENCE_MASS_KG * self.scale**2) - 1  # body-mass index
         trunk, legs = 1 + _TRUNK_SHARE * excess, 1 + _LEG_SHARE * excess
-        return Build(trunk_mass=trunk, leg_mass=legs, friction=self.friction, sole_time=self.sole_time_s)
+        sole_time = self.sole_time_s / self.time_scale
+        return Build(trunk_mass=trunk, leg_mass=legs, friction=self.friction, sole_time=sole_time)
 
     @property
     def habits(self) -> Habits:

@@ -13,7 +13,8 @@ from footfall.models import body
 from footfall.simulate._elementwise import choose, clip, turned
 from footfall.simulate.state import CREEP
 
-SPEED_SLEW, SLOWING_SHARE = 0.8, 0.9  # m/s2, of the commanded speed upwards; share of it downwards
+# m/s2, of the commanded speed upwards; share of it downwards, and until the first step has landed.
+SPEED_SLEW, SLOWING_SHARE, SETTING_OUT_SHARE = 0.8, 0.9, 0.6
 TURN_SLEW = 2.0  # rad/s2
 LIMIT = 6.0  # of an observation
 _DOWN, _TOPPLED, _LOST_HEADING = 0.75, 0.75, 1.1  # m, cosine, rad: a body beyond these has fallen
@@ -88,7 +89,8 @@ def settle(s):  # type: ignore[no-untyped-def]
     s.fresh = False
     s.heading += s.turn * s.dt
     slew = SPEED_SLEW * s.dt
-    change = clip(wanted(s) - s.speed, -SLOWING_SHARE * slew, choose(s.gate > 0.3, slew, 0.0))
+    faster = choose(s.gate > 0.3, choose(s.setting_out, SETTING_OUT_SHARE, 1.0) * slew, 0.0)
+    change = clip(wanted(s) - s.speed, -SLOWING_SHARE * slew, faster)
     s.speed += change
     turn = s.turn + clip(s.turn_goal - s.turn, -TURN_SLEW * s.dt, TURN_SLEW * s.dt)
     s.turn = choose(s.gate < 0.5, 0.0, turn)

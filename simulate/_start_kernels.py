@@ -17,7 +17,7 @@ from footfall.simulate._elementwise import choose, clip
 
 # The shift: hips that push sideways and ankles that let the body fall forwards (rad), within `_SHIFT_S`. The
 # first step begins as soon as the foot that is to make it carries no more than `_UNLOADED` body weights.
-_SIDEWAYS, _FORWARDS = 0.10, 0.10
+_SIDEWAYS, _FORWARDS = 0.10, 0.20
 _SHIFT_S, _LONGEST_S, _SHORTEST_S = 0.40, 0.50, 0.1
 _UNLOADED = 0.25
 _LIFTED = 0.2  # body weights; a foot that carries less may do what a swinging foot does

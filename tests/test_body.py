@@ -32,6 +32,15 @@ def test_a_heavier_person_of_the_same_height_has_a_heavier_trunk() -> None:
     assert tall.time_scale == pytest.approx(np.sqrt(1.90 / 1.75))
 
 
+@pytest.mark.parametrize("height", [1.50, 1.75, 1.95])
+def test_a_sole_takes_the_time_that_it_takes_whoever_wears_it(height: float) -> None:
+    """The walk of the simulated body is stretched by `time_scale`: so is what its sole does."""
+    subject = Subject("a", height_m=height, sole_time_s=0.02)
+    assert subject.build.sole_time * subject.time_scale == pytest.approx(0.02)
+    model = build_body(subject.build, timestep=STEP)
+    assert model.geom("sole_in_r").solref[0] == pytest.approx(0.02 / subject.time_scale)
+
+
 @given(st.integers(0, 10_000))
 def test_drawn_people_can_all_walk(seed: int) -> None:
     subject = draw_subject(np.random.default_rng(seed))
