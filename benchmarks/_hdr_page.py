@@ -123,3 +123,14 @@ class Judged:
     def as_dict(self) -> dict[str, Any]:
         """Plain numbers."""
         return {name: asdict(group) for name, group in self.groups.items()}
+
+
+def mounts_markdown(judged: Mapping[str, Judged]) -> str:
+    """All units drawn, from one place of the IMU to the next, for a page."""
+    lines = ["| judged on | | mean | median | 90th percentile |", "| --- | --- | --- | --- | --- |"]
+    for title, found in judged.items():
+        group = found.groups["all units drawn"]
+        for method in list(group.methods)[:2]:  # uncorrected, and HDR as it comes
+            cells = [group.methods[method].pair(name) for name in STATISTICS]
+            lines.append("| " + " | ".join([title if method == "uncorrected" else "", method, *cells]) + " |")
+    return "\n".join(lines)

@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 from _common import Case, Wearing, dead_reckoned, options, out, shared_out, within_paper, write_json
 from _hdr_figure import draw
-from _hdr_page import Group, Judged, summary
+from _hdr_page import Group, Judged, mounts_markdown, summary
 from _ihde_page import fill
 from rich.table import Table
 
@@ -202,7 +202,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 alone = {name: errors[0] for name, errors in methods.items()}
                 draw(chosen.figure, I_C, THETA_W, (tuned_map, judged_map), alone, found.in_range)
     if chosen.page:
-        fill(chosen.page, {"hdr": judged[first].markdown(), "hdr noise": judged[first].noise_markdown()})
+        tables = {"hdr": judged[first].markdown(), "hdr noise": judged[first].noise_markdown()}
+        moves = {"hdr mounts": mounts_markdown(judged)} if moved else {}
+        fill(chosen.page, tables | moves)
     document = {
         "tau_s": chosen.tau,
         "i_c_deg_s": I_C,

@@ -121,7 +121,8 @@ def test_hdr_is_tuned_and_judged_on_different_walks_and_units(scripts, short: st
     out, figure = tmp_path / "out.json", tmp_path / "figure.png"
     few = ["--walks", "2", "--units", "4", "--tuning-walks", "1", "--tuning-units", "3", "--processes", "1"]
     page = tmp_path / "page.md"
-    page.write_text("<!-- table hdr -->\n<!-- end -->\n<!-- table hdr noise -->\n<!-- end -->\n")
+    marks = ("hdr", "hdr noise", "hdr mounts")
+    page.write_text("".join(f"<!-- table {name} -->\n<!-- end -->\n" for name in marks))
     few += ["--noises", "2", "--mounts", "medial", "--page", str(page)]
     scripts.hdr_table2.main([short, *few, "--json", str(out), "--figure", str(figure)])
     document = json.loads(out.read_text())
@@ -135,7 +136,10 @@ def test_hdr_is_tuned_and_judged_on_different_walks_and_units(scripts, short: st
     assert moved != found
     assert figure.stat().st_size > 10_000
     shown = f"{found['over_all']['average']['mean']:.1f} / {found['over_all']['final']['mean']:.1f}"
-    assert f"| 12 recordings of 4 units, all units drawn | uncorrected | {shown} |" in page.read_text()
+    text = page.read_text()
+    assert f"| 12 recordings of 4 units, all units drawn | uncorrected | {shown} |" in text
+    assert f"| short | uncorrected | {shown} |" in text
+    assert "| short, medial | uncorrected |" in text
 
     row, column = np.unravel_index(np.argmin(grid), grid.shape)
     theta_w = document["theta_w_deg_s"][column]
