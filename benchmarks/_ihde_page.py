@@ -4,17 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from math import degrees
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from footfall.hdr.ihde import IhdeParams
 from footfall.scenarios.paper import IHDE_TABLE_2, range_text
-
-if TYPE_CHECKING:
-    from ihde_table2 import Scattered
 
 
 def _markdown(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
@@ -26,79 +20,65 @@ def _number(value: float) -> str:
     return f"{value:.1f}" if value >= 10 else f"{value:.2f}"
 
 
+def _spread(errors: np.ndarray) -> str:
+    """Median (10th to 90th percentile) of return errors in % (walks,)."""
+    low, middle, high = np.percentile(errors, [10, 50, 90])
+    return f"{_number(middle)} ({_number(low)} to {_number(high)})"
+
+
 def table_2(errors: Mapping[str, Mapping[str, np.ndarray]]) -> str:
-    """Test -> method -> (seeds, 3) as a table: return and heading errors, the paper's range beside them."""
+    """Test -> method -> (walks, 3) as a table: return and heading errors, the paper's ranges first."""
     tests = list(errors)
     head = ["P_err (%), median (10th to 90th percentile); mean heading error (deg)"]
     for test in tests:
-        head += [test, "heading", "paper"]
+        head += [test, "heading"]
     rows = []
+    for method in ("iez", "hde", "ihde"):
+        row = [f"**the paper: {method.upper()}**"]
+        for test in tests:
+            row += [range_text(IHDE_TABLE_2[test][method]), ""]
+        rows.append(row)
     for method in errors[tests[0]]:
         row = [f"`{method}`" if " " not in method else method]
         for test in tests:
-            low, middle, high = np.percentile(errors[test][method][:, 0], [10, 50, 90])
-            paper = IHDE_TABLE_2[test].get(method)
-            row += [
-                f"{_number(middle)} ({_number(low)} to {_number(high)})",
-                f"{errors[test][method][:, 1].mean():.1f}",
-                range_text(paper) if paper else "",
-            ]
+            found = errors[test][method]
+            row += [_spread(found[:, 0]), f"{found[:, 1].mean():.1f}"]
         rows.append(row)
     return _markdown(head, rows)
 
 
 def setting_table(settings: Mapping[str, tuple[str, str]]) -> str:
     """What the tuning walks chose, beside the defaults."""
-    rows = [[name, *words] for name, words in settings.items()]
+    rows = [[f"`{name}`", *words] for name, words in settings.items()]
     return _markdown(["", "chosen on the tuning walks", "default"], rows)
 
 
-def threshold_table(grid: Sequence[IhdeParams], errors: Mapping[str, np.ndarray]) -> str:
-    """IHDE by its threshold at sigma = 4 deg, on the tuning walks; errors: test -> (seeds, grid, 3)."""
-    head = ["a / k1 (deg)", "mean heading"]
-    for test in errors:
-        head += [f"{test}: P_err (%), median", "heading error (deg)"]
-    rows = []
-    for i, params in enumerate(grid):
-        if round(degrees(params.sigma), 6) != 4:
-            continue
-        row = [f"{degrees(params.a / params.k1):.3g}", "fed back" if params.fallback else "left out"]
-        for found in errors.values():
-            row += [_number(float(np.median(found[:, i, 0]))), f"{found[:, i, 1].mean():.1f}"]
-        rows.append(row)
+def variant_table(*gaits: Mapping[str, Mapping[str, np.ndarray]]) -> str:
+    """Test -> variant -> (walks, 3) of people, then of somebody on a line, as one table."""
+    tests = list(gaits[0])
+    head = ["P_err (%), median (10th to 90th percentile)"]
+    head += [f"{test}{gait}" for gait in ("", ", on a line") for test in tests]
+    rows = [
+        [name, *(_spread(gait[test][name][:, 0]) for gait in gaits for test in tests)]
+        for name in gaits[0][tests[0]]
+    ]
     return _markdown(head, rows)
 
 
-def scatter_table(
-    found: Sequence[Scattered], gaits: Sequence[str], tests: Sequence[str], thresholds: Sequence[float]
-) -> str:
-    """Return errors against how much the stance yaw scatters, each gait with its best threshold (deg)."""
-    head = ["gait", "stance yaw SD (deg)", "foot beside the path, standing / walking (deg)"]
-    head += ["a / k1 (deg)"]
-    for test in tests:
-        head += [f"{test}: IEZ", "IHDE", "foot known", "and no mean heading"]
+LOST_DEG = 30.0
+
+
+def loop_table(methods: Sequence[str], errors: np.ndarray) -> str:
+    """Heading errors on the closed loop, (walks x units, methods, 3)."""
+    head = ["", "mean heading error (deg), median", "90th percentile", "final, median", "90th percentile"]
+    head.append(f"lost (mean above {LOST_DEG:g} deg)")
     rows = []
-    for gait in gaits:
-        mine = [one for one in found if one.gait == gait]
-        if not mine:
-            continue
-        yaw, standing, walking = np.mean(
-            [(one.yaw_sd_deg, one.standing_deg, one.walking_deg) for one in mine], axis=0
-        )
-        heading = np.mean([np.array(one.errors)[:, 1] for one in mine], axis=0)
-        half = len(thresholds)
-        best = [int(np.argmin(heading[1 + i * half : 1 + (i + 1) * half])) for i in range(3)]
-        places = [0, *(1 + i * half + best[i] for i in range(3))]
-        row = [gait, f"{yaw:.1f}", f"{standing:.1f} / {walking:.1f}"]
-        row.append(" / ".join(f"{thresholds[i]:g}" for i in best))
-        for test in tests:
-            errors = np.array([one.errors for one in mine if one.test == test])
-            row += [_number(np.median(errors[:, i, 0])) for i in places] if len(errors) else [""] * 4
-        rows.append(row)
-    paper = ["the paper's", "", "", ""]
-    for test in tests:
-        paper += [range_text(IHDE_TABLE_2[test]["iez"]), range_text(IHDE_TABLE_2[test]["ihde"]), "", ""]
-    return _markdown(head, [*rows, paper])
+    for i, method in enumerate(methods):
+        mean, final = errors[:, i, 1], errors[:, i, 2]
+        row = [f"`{method}`" if " " not in method else method]
+        row += [f"{np.percentile(values, q):.1f}" for values in (mean, final) for q in (50, 90)]
+        rows.append([*row, f"{(mean > LOST_DEG).sum()} of {len(mean)}"])
+    return _markdown(head, rows)
 
 
 def fill(page: Path, tables: Mapping[str, str]) -> None:

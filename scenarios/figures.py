@@ -25,6 +25,7 @@ _COLOURS = {
     "iez": "#c98a00",
     "hde": "#6a9f3a",
     "ihde": "#1f6fb4",
+    "ihde-plus": "#7b4fa3",
 }
 _MORE = ("#7b4fa3", "#c98a00", "#2a9d8f", "#8d5524", "#d16ba5", "#444f9b")
 _LABELS = {
@@ -34,6 +35,7 @@ _LABELS = {
     "iez": "IEZ",
     "hde": "HDE",
     "ihde": "IHDE",
+    "ihde-plus": "IHDE+",
 }
 _MOST_PANELS = 8  # walks beyond these are in the tables, not in the figures
 _CAUSES = {
