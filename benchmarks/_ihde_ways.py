@@ -93,9 +93,9 @@ class Job:
 
 def navigate(job: Job) -> np.ndarray | str:
     """(units, ways, 3) return error (%), mean and final heading error (deg); or why the walk did not end."""
-    scenario = job.scenario
+    scenario, number = job.scenario, job.seed - job.scenario.seed
     try:
-        walk = cached_walk(scenario.plan(job.seed - scenario.seed))
+        walk = cached_walk(scenario.plan(number))
     except InputError as error:
         return str(error)
 
@@ -105,7 +105,7 @@ def navigate(job: Job) -> np.ndarray | str:
             walk,
             draw_unit(load_spec(scenario.imu), unit),
             seed=unit,
-            temperature=scenario.temperature_of(0),
+            temperature=scenario.temperature_of(number),
             bias_shift=bias * scenario.unit_bias_shift(unit),
         )
         return reckoning(scenario, walk, recording)
