@@ -26,6 +26,7 @@ fit=$(sed -nE 's/^([0-9]+) of ([0-9]+) units fit.*/\1 of the \2 drawn fit./p' "$
 sed -i "s/^units = .*/$units/; s/^# at)\. .*/# at). $fit/" scenarios/stock/closed-loop.toml
 measure closed-loop footfall run closed-loop --out "$out/closed-loop"
 cp "$out"/closed-loop/{maps,heading_error,controller,drift_budget}.png docs/images/
+measure gentle footfall run closed-loop-gentle --walks 2 --units 20 --out "$out/gentle"
 measure perfect footfall run closed-loop --imu perfect --units 0 --noises 0 --out "$out/perfect"
 measure hdr_table2 python benchmarks/hdr_table2.py --mounts instep --figure docs/images/hdr_table2.png --page docs/results.md
 measure swaying python benchmarks/swaying.py --page docs/swaying.md --figure docs/images/swaying.png
