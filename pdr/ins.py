@@ -35,7 +35,8 @@ class FilterSettings:
     ----------
     update : "stance": zero velocity once a stance, at its quietest instant (and every `StanceParams.reset_s`
         while standing still); "sample": at every sample that the detector calls still, as in the paper
-    sigma_velocity : m/s, of the zero velocity
+    sigma_velocity : m/s, of the zero velocity. A sole rolls: the foot moves alike at every stance when it is
+        called still, and what is granted less than this passes for a gyro bias (docs/iez.md)
     velocity_turns : True lets zero velocity correct the heading and the gyro bias about the vertical, as in
         the paper. A bias b turns a stride of length L sideways by b L, so that every velocity which a foot
         has to the side when it is called still passes for a bias. False leaves them what they are, and the
@@ -55,7 +56,7 @@ class FilterSettings:
     """
 
     update: Literal["stance", "sample"] = "stance"
-    sigma_velocity: float = 0.01
+    sigma_velocity: float = 0.05
     velocity_turns: bool = False
     accel_noise: float = 0.03
     gyro_noise: float = 0.002

@@ -98,7 +98,7 @@ def test_the_place_is_as_uncertain_at_the_first_footfall_as_the_way_to_it_leaves
     update = updates(recording.t, found, None)[rows]
     now.advance(recording.t[rows], recording.gyro[rows], recording.accel[rows], update)
     sd = np.sqrt(np.diag(now.covariance)[:3])
-    assert (sd < 0.01).all()
+    assert (sd < 0.02).all()
     assert (np.abs(now.position - truth.position[truth.at(np.array([now.t]))[0]]) < 2 * sd).all()
 
 
@@ -142,6 +142,8 @@ def test_with_a_perfect_imu_a_track_needs_no_alignment(short_walk):
     settings = FilterSettings()
     smooth = run_filter(recording, settings, start=start, smooth=True)
     found["iez-smoothed"] = filter_track(smooth, settings, name="iez-smoothed")
+    # What the rolling of the sole passes for: 7 deg/h with a zero velocity of 0.01 m/s.
+    assert np.linalg.norm(smooth.gyro_bias[-1]) < 5 * DEG / 3600
     for name, track in found.items():
         row = compare(track, short_walk)
         error, off = np.abs(row.heading_error) / DEG, np.hypot(*(row.estimate - row.truth).T)
