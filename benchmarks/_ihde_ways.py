@@ -18,7 +18,6 @@ from footfall.hdr.ihde_plus import IhdePlus, IhdePlusParams
 from footfall.hdr.jimenez import FilterHdr, FilterHdrParams, Jimenez, JimenezParams
 from footfall.hdr.methods import on_papers_filter
 from footfall.hdr.tracks import (
-    GUIDED,
     HeadingMethod,
     Reckoning,
     corrected_track,
@@ -77,7 +76,7 @@ class Way:
         if self.params is None:
             return iez_track(given, FilterSettings.paper() if paper else FilterSettings(), name="iez")
         corrector: HeadingMethod = CORRECTORS[type(self.params)](self.params)
-        settings = FilterSettings.paper() if paper else GUIDED
+        settings = FilterSettings.paper() if paper else given.guided
         return corrected_track(given, corrector, settings, name=type(self.params).__name__)
 
 

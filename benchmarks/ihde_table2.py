@@ -39,20 +39,19 @@ GAITS: Mapping[str, float] = {"people": 1.0, "line": 0.3}  # variability
 SOURCES = ("yaw", "course", "both")
 
 HDE_GRID = tuple(
-    HdeParams(heading=heading, sigma=radians(sigma))
-    for heading, sigma in product(SOURCES, (4, 8, 12, 20, 40))
+    HdeParams(heading=heading, sigma=radians(sigma)) for heading, sigma in product(SOURCES, (8, 12, 20, 40))
 )
 IHDE_GRID = tuple(
     IhdeParams(heading=heading, a=IhdeParams.k1 * radians(scatter), sigma=radians(sigma))
-    for heading, scatter, sigma in product(SOURCES, (1, 1.5, 1.75, 2, 2.5, 3), (2, 4, 8))
+    for heading, scatter, sigma in product(SOURCES, (1.5, 1.75, 2, 2.5), (4, 8))
 )
 JIMENEZ_GRID = tuple(
     JimenezParams(heading=heading, gate=radians(gate), sigma=radians(sigma))
-    for heading, gate, sigma in product(SOURCES, (2, 3, 4), (1, 2, 4))
+    for heading, gate, sigma in product(SOURCES, (2, 3, 4), (2, 4))
 )
 PLUS_GRID = tuple(
-    IhdePlusParams(heading=heading, scatter=radians(scatter), sigma=radians(sigma))
-    for heading, scatter, sigma in product(SOURCES, (1.5, 2, 2.5), (2, 3, 4))
+    IhdePlusParams(heading=heading, scatter=radians(scatter))
+    for heading, scatter in product(SOURCES, (1.5, 2, 2.5))
 )
 
 

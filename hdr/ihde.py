@@ -44,7 +44,7 @@ class IhdeParams:
     heading: HeadingSource = "course"
     window: int = 5
     k1: float = math.degrees(4.0)
-    a: float = 8.0
+    a: float = 7.0
     b: float = 500.0
     c: float = 2.0
     gamma_t: float = 1.1

@@ -16,6 +16,7 @@ from footfall.hdr.ihde_plus import IhdePlus, IhdePlusParams
 from footfall.hdr.jimenez import FilterHdr, Jimenez, JimenezParams
 from footfall.hdr.tracks import (
     UNTOLD,
+    HeadingMethod,
     Reckoning,
     corrected_track,
     hde_2010_track,
@@ -79,6 +80,11 @@ def _plus(reckoning: Reckoning) -> IhdePlus:
 def on_papers_filter(reckoning: Reckoning) -> Reckoning:
     """The same recording with the paper's detector, the GLRT (Deng et al. 2018, Eq. 14 to 19)."""
     return replace(reckoning, pdr=replace(reckoning.pdr, detector=Shoe()))
+
+
+def _by_paper(reckoning: Reckoning, method: Callable[[Reckoning], HeadingMethod], *, name: str) -> Track:
+    given = on_papers_filter(reckoning)
+    return corrected_track(given, method(given), FilterSettings.paper(), name=name)
 
 
 METHODS: Mapping[str, Method] = MappingProxyType(
@@ -146,17 +152,13 @@ METHODS: Mapping[str, Method] = MappingProxyType(
             Method(
                 "hde-paper",
                 "hde on the filter of iez-paper",
-                lambda r: corrected_track(
-                    on_papers_filter(r), _hde(r), FilterSettings.paper(), name="hde-paper"
-                ),
+                lambda r: _by_paper(r, _hde, name="hde-paper"),
                 directions="all",
             ),
             Method(
                 "ihde-paper",
                 "ihde on the filter of iez-paper",
-                lambda r: corrected_track(
-                    on_papers_filter(r), _ihde(r), FilterSettings.paper(), name="ihde-paper"
-                ),
+                lambda r: _by_paper(r, _ihde, name="ihde-paper"),
                 directions="all",
             ),
         )

@@ -80,7 +80,6 @@ class StepHeadings:
 
     def applied(self, turned: float) -> None:
         """The filter's heading was turned by `turned` (rad)."""
-        self._last += turned
         for i in range(len(self.recent)):
             self.recent[i] += turned
         if self._yaw is not None:

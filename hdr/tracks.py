@@ -27,8 +27,6 @@ from footfall.recording import Recording
 
 SETTING_OUT = 5.0  # m; sooner, the first strides' swaying counts, later the drift
 UNTOLD = DirectionParams(reference=None)
-# What a filter whose heading is corrected may believe of the gyro: that tells it what a rest does not.
-GUIDED = FilterSettings(gyro_bias_sd=math.radians(0.3))
 
 # A plain dict: tracks travel between processes, and a mapping proxy cannot be pickled.
 HDR_UNITS: Mapping[str, str] = {
@@ -48,12 +46,14 @@ class Reckoning:
     ----------
     directions : that a method goes by that goes by any; without a reference, one of them is that in which the
         walk sets out
+    guided : settings of the filter under a heading method, where that names no filter of its own
     """
 
     recording: Recording
     start: StartPose = field(default_factory=StartPose)
     pdr: PdrParams = field(default_factory=PdrParams)
     directions: DirectionParams = UNTOLD
+    guided: FilterSettings = field(default_factory=FilterSettings)
 
     @cached_property
     def footfalls(self) -> Footfalls:
@@ -180,7 +180,7 @@ def corrected_track(
     Parameters
     ----------
     corrector : a new one; it remembers what it was asked
-    settings : of the filter; None for `GUIDED`
+    settings : of the filter; None for `reckoning.guided`
     name : of the method, for the track's provenance
 
     Returns
@@ -188,7 +188,7 @@ def corrected_track(
     Track
         Evidence: the filter's and, in the method's own `units`, what it saw and did.
     """
-    settings = settings or GUIDED
+    settings = settings or reckoning.guided
     filtered = reckoning.filtered(settings, corrector)
     evidence = dict(zip(corrector.units, np.array(corrector.rows, dtype=float).T, strict=True))
     track = filter_track(filtered, settings, name=name, evidence=evidence, units=corrector.units)

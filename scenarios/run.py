@@ -16,6 +16,7 @@ from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams
 from footfall.hdr.methods import Reckoning, require_methods, tracks
 from footfall.models.imu import draw_unit, load_spec
+from footfall.pdr.ins import FilterSettings
 from footfall.pdr.pdr import PdrParams, StartPose
 from footfall.pdr.track import Track
 from footfall.recording import Recording
@@ -27,6 +28,7 @@ from footfall.simulate.record import BIAS_TIME, record, record_with_budget
 from footfall.simulate.walk import Walk
 
 DEFAULT_METHODS = ("pdr", "hdr")
+UNSURE = FilterSettings.paper().gyro_bias_sd  # rad/s, of a gyro bias that no rest has told
 OTHER_UNITS_FROM = 1000  # seeds of the units that are reported beside the scenario's own
 OTHER_NOISES_FROM = 5000  # seeds of the noises that the walks' own units are heard through once more
 
@@ -96,12 +98,18 @@ def start_pose(walk: Walk, bias_s: float = BIAS_TIME) -> StartPose:
 
 
 def reckoning(scenario: Scenario, walk: Walk, recording: Recording) -> Reckoning:
-    """A recording and what a run tells of it: start pose, T_bias, and the direction of the path's begin."""
+    """A recording and what a run tells of it: start pose, T_bias, and the direction of the path's begin.
+
+    Where a bias appears with the first step, filters under a heading method are told that the rest says
+    little of it.
+    """
+    guided = FilterSettings(gyro_bias_sd=UNSURE) if scenario.bias_shift else FilterSettings()
     return Reckoning(
         recording,
         start_pose(walk, scenario.bias_time),
         PdrParams(bias_s=scenario.bias_time),
         DirectionParams(reference=float(scenario.path.route.heading[0])),
+        guided,
     )
 
 

@@ -11,11 +11,13 @@ from footfall.hdr.hde import Hde
 from footfall.hdr.ihde import Ihde
 from footfall.hdr.ihde_plus import IhdePlus
 from footfall.hdr.jimenez import FilterHdr, Jimenez
-from footfall.hdr.methods import METHODS, Reckoning, told_directions, tracks
-from footfall.hdr.tracks import GUIDED, corrected_track
+from footfall.hdr.methods import METHODS, Reckoning, on_papers_filter, told_directions, tracks
+from footfall.hdr.tracks import corrected_track
+from footfall.pdr.detectors import Shoe
 from footfall.pdr.filtering import run_filter
 from footfall.pdr.ins import FilterSettings
-from footfall.pdr.pdr import StartPose
+from footfall.pdr.pdr import PdrParams, StartPose
+from footfall.pdr.stance import ThresholdDetector
 
 DEG = math.pi / 180
 
@@ -32,7 +34,7 @@ def test_the_filter_tells_strides_and_what_it_turned(corridor):
         def applied(self, by):
             turned.append(by)
 
-    filtered = run_filter(corridor[1], GUIDED, corrector=Teller())
+    filtered = run_filter(corridor[1], corrector=Teller())
     places = filtered.footfalls.position
     for step in seen:
         np.testing.assert_allclose(step.position - step.stride, places[step.index - 1], atol=1e-12)
@@ -94,11 +96,34 @@ def test_a_wrong_start_is_put_right(corridor, corrector):
 def test_the_record_has_a_row_a_footfall_and_is_what_the_filter_was_told(corridor, corrector):
     asked = corrector()
     one = corrected_track(Reckoning(corridor[1]), asked, name="mine")
-    filtered = run_filter(corridor[1], GUIDED, corrector=corrector())
+    filtered = run_filter(corridor[1], corrector=corrector())
     assert set(asked.units) <= set(one.evidence)
     assert all(len(one.evidence[name]) == len(one) for name in asked.units)
     np.testing.assert_array_equal(one.evidence["innovation"], filtered.innovation)
     assert one.meta["params"]["sigma"] == asked.params.sigma
+
+
+@pytest.mark.parametrize("name", ["hde", "ihde", "ihde-jimenez", "ihde-plus", "hdr-filter"])
+def test_what_a_filter_believes_under_a_heading_method_can_be_told(corridor, name):
+    unsure = FilterSettings(gyro_bias_sd=0.5 * DEG)
+    told = tracks(Reckoning(corridor[1], guided=unsure), [name])[name]
+    untold = tracks(Reckoning(corridor[1]), [name])[name]
+    assert told.meta["filter"]["gyro_bias_sd"] == 0.5 * DEG
+    assert untold.meta["filter"] == vars(FilterSettings())
+    assert np.abs(told.heading - untold.heading).max() > 0.05 * DEG
+
+
+@pytest.mark.parametrize("name", ["iez-paper", "hde-paper", "ihde-paper"])
+def test_the_papers_methods_have_the_papers_filter_and_detector(corridor, name):
+    """Whatever detector finds the stances of the others."""
+    found = [
+        tracks(Reckoning(corridor[1], pdr=PdrParams(detector=detector)), [name])[name]
+        for detector in (ThresholdDetector(), Shoe())
+    ]
+    np.testing.assert_array_equal(found[0].heading, found[1].heading)
+    assert found[0].meta["filter"] == vars(FilterSettings.paper())
+    other = run_filter(corridor[1], FilterSettings.paper())
+    assert len(other.footfalls.t) != len(found[0]) or np.abs(other.footfalls.t - found[0].t).max() > 0
 
 
 @pytest.mark.parametrize("name", METHODS)
@@ -132,6 +157,8 @@ def test_directions_can_be_told(corridor, name):
 def test_untold_directions_count_from_where_the_walk_sets_out(corridor, name):
     """And not from where the foot points, which may be beside it."""
     reckoning = Reckoning(corridor[1], StartPose(heading=20 * DEG))
+    if name.endswith("-paper"):  # its own stances
+        reckoning = on_papers_filter(reckoning)
     reference = reckoning.setting_out
     assert reference == pytest.approx(20 * DEG, abs=1 * DEG)
     told = told_heading(corridor[1], name, reference=reference)

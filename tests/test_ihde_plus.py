@@ -220,10 +220,10 @@ def test_the_probability_of_a_straight_is_bayes(n, slope, seed):
     least = math.inf
     for window in (10, 20):
         _, k, weight = line(headings[-window:])
-        own = PARAMS.scatter**2 / weight
-        curve = np.mean([density(k, own + q * q) for q in PARAMS.curve_slopes])
+        own = (2 * DEG) ** 2 / weight
+        curve = np.mean([density(k, own + (q * DEG) ** 2) for q in (0.6, 2.5)])
         assume(curve > 1e-200)
-        straight = density(k, own + PARAMS.straight_slope**2)
+        straight = density(k, own + (0.1 * DEG) ** 2)
         least = min(least, 0.8 * straight / (0.8 * straight + 0.2 * curve))
     assert straight_probability(list(headings), PARAMS) == pytest.approx(least, abs=1e-6)
 

@@ -140,6 +140,9 @@ def test_a_run_tells_rest_shift_and_the_paths_direction(workshop):
     told = reckoning(scenario, result.walk, result.recording)
     assert (told.pdr.bias_s, told.directions.reference) == (10.0, 0.0)
     assert told.start == start_pose(result.walk, 10.0)
+    assert told.guided.gyro_bias_sd == pytest.approx(math.radians(0.3))
+    sure = reckoning(replace(scenario, bias_shift=0.0), result.walk, result.recording)
+    assert sure.guided.gyro_bias_sd == pytest.approx(math.radians(0.1))
     assert result.tracks["ihde"].meta["params"]["directions"]["reference"] == 0.0
 
 
