@@ -29,7 +29,7 @@ GO_SPEED = 0.2  # m/s; a commanded speed above it is a wish to walk
 _RESIDUAL_LIMIT = 2.0  # of action scale, feedback included
 _BRAKE = 0.2  # rad per m/s
 _STOP_SPEED = CREEP + 0.05
-_GATE_DOWN_S, _GATE_UP_S = 0.23, 0.40
+_GATE_DOWN_S, _GATE_UP_S, _FIRST_GATE_UP_S = 0.23, 0.35, 0.40
 _PENDULUM_S = 0.31  # sqrt(height of the centre of mass / g)
 _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
 _STANDING_POINT = -0.004  # m, centre of mass before the middle of the ankles
@@ -272,7 +272,8 @@ def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
 def open_gate(s):  # type: ignore[no-untyped-def]
     """Open or close the gate over this control step."""
     s.gate_before = s.gate
-    s.gate = clip(s.gate + choose(s.closing, -s.dt / _GATE_DOWN_S, s.dt / _GATE_UP_S), 0.0, 1.0)
+    opening = 1.0 / choose(s.setting_out, _FIRST_GATE_UP_S, _GATE_UP_S)
+    s.gate = clip(s.gate + s.dt * choose(s.closing, -1.0 / _GATE_DOWN_S, opening), 0.0, 1.0)
 
 
 @register_jitable

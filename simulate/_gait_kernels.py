@@ -13,13 +13,14 @@ from numba.extending import register_jitable
 from footfall.models import gait
 from footfall.models.body import SERVOS
 from footfall.simulate._elementwise import choose
-from footfall.simulate._start_kernels import hold_feet
+from footfall.simulate._start_kernels import as_placed, hold_feet
 from footfall.simulate.state import ACTION_SCALE, AMPLITUDE, CADENCE, TOE_OUT_LEFT, TOE_OUT_RIGHT, WIDTH
 
 _LEG_LENGTH = 0.9  # m, turns a step width into an adduction
 _WIDER = 0.03  # m by which each leg is set wider while stopping
 _SLEW_S = 0.12
-FROZEN = 0.12  # of the stride after a heel strike, where the phase of a stand rests
+# Of the stride after a heel strike: where the phase of a stand rests, before the walk and after a stop.
+FROZEN, FROZEN_AFTER_A_STOP = 0.12, 0.06
 
 
 # The reference gait: a table (phases, 17) rad, and per servo (17,) what scales, shifts and leans it.
@@ -50,7 +51,7 @@ def stride(s):  # type: ignore[no-untyped-def]
     opening = choose(s.gate > 0, np.maximum(s.gate, 0.5), 0.0)
     pace = choose(s.closing, s.gate * s.gate, opening)
     s.advance = gait.stride_frequency(s.speed) * (1 + s.varied[CADENCE]) * pace * s.dt
-    resting = np.floor(s.phase * 2) / 2 + FROZEN
+    resting = np.floor(s.phase * 2) / 2 + choose(as_placed(s), FROZEN, FROZEN_AFTER_A_STOP)
     s.next_phase = choose(s.closing & (s.gate <= 0), resting, s.phase + s.advance)
 
 

@@ -1,9 +1,10 @@
-"""Compiled: setting out. The weight goes to one foot, the other one steps, and a loaded foot stays as it is.
+"""Compiled: the walk's first step. The weight goes to one foot, the other steps, and a loaded foot lies still.
 
 Laws in terms of one walker `s` (see state.py). People take half a second to shift their weight before the
 first foot leaves the ground. Until that foot lands, the torques of a loaded foot's ankle and hip rotation are
 kept within what leaves the pressure under the sole, and the sole where it is: the gait, made for mid-walk,
-would else rock the foot on to its heel and twist it.
+would else rock the foot on to its heel and twist it. After a stop the feet stand one before the other and
+apart; from there such a slow first step falls more often than the gait's quick one, which is kept there.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from footfall.simulate._elementwise import choose, clip
 
 # The shift: hips that push sideways and ankles that let the body fall forwards (rad), within `_SHIFT_S`. The
 # first step begins as soon as the foot that is to make it carries no more than `_UNLOADED` body weights.
-_SIDEWAYS, _FORWARDS = 0.10, 0.20
+_SIDEWAYS, _FORWARDS = 0.10, 0.15
 _SHIFT_S, _LONGEST_S, _SHORTEST_S = 0.40, 0.50, 0.1
 _UNLOADED = 0.25
 _LIFTED = 0.2  # body weights; a foot that carries less may do what a swinging foot does
@@ -37,6 +38,12 @@ _ROTATION, _ANKLE, _SUBTALAR = (INDEX[f"{name}_r"] - _RIGHT for name in ("hip_ro
 
 
 @register_jitable
+def as_placed(s):  # type: ignore[no-untyped-def]
+    """The feet are side by side, where they were set down before the walk: it has not stopped yet."""
+    return (s.stagger == 0.0) & (s.spread == 0.0)
+
+
+@register_jitable
 def loads(s):  # type: ignore[no-untyped-def]
     """Force on the right and the left foot (N)."""
     right = s.sensor[_TOUCH_R] + s.sensor[_TOUCH_R + 1] + s.sensor[_TOUCH_R + 2]
@@ -47,8 +54,7 @@ def loads(s):  # type: ignore[no-untyped-def]
 @register_jitable
 def set_out(s, wish, step_phase):  # type: ignore[no-untyped-def]
     """Shift the weight of who stands and wishes to walk; True once the first step may begin."""
-    stands = s.closing & (s.gate <= 0)
-    shifts = stands & wish
+    shifts = as_placed(s) & s.closing & (s.gate <= 0) & wish
     s.left_first = choose(shifts, s.left_stance, s.left_first)
     right, left = loads(s)
     stepping = choose(s.left_first, right, left)
@@ -56,7 +62,7 @@ def set_out(s, wish, step_phase):  # type: ignore[no-untyped-def]
     s.setting_out = shifts | (s.setting_out & np.logical_not(s.closing | landed))
     s.shift = choose(shifts, s.shift + s.dt, choose(s.setting_out, s.shift, 0.0))
     unloaded = (s.shift > _SHORTEST_S) & (stepping < _UNLOADED * s.weight)
-    return wish & (unloaded | (s.shift > _LONGEST_S) | np.logical_not(stands))
+    return wish & (unloaded | (s.shift > _LONGEST_S) | np.logical_not(shifts))
 
 
 @register_jitable
