@@ -66,10 +66,8 @@ def test_it_speaks_of_the_first_straight_from_the_eighth_step_on():
     assert said[7][0] == pytest.approx(-2 * DEG)
     assert said[8][0] == pytest.approx(0)
     row = corrector.rows[8]
-    assert (row.headings, row.innovation_sd) == (
-        5,
-        pytest.approx(PARAMS.sigma / math.sqrt(row.straight * row.along)),
-    )
+    sd = 3 * DEG / math.sqrt(row.straight * row.along)
+    assert (row.headings, row.innovation_sd) == (5, pytest.approx(sd))
     assert said[7][1] == row.innovation_sd
 
 
