@@ -1,4 +1,4 @@
-"""Compiled: the walk's first step. The weight goes to one foot, the other steps, and a loaded foot lies still.
+"""Compiled: the first step. The weight goes to one foot, the other one steps, and a loaded foot lies still.
 
 Laws in terms of one walker `s` (see state.py). People take half a second to shift their weight before the
 first foot leaves the ground. Until that foot lands, the torques of a loaded foot's ankle and hip rotation are
