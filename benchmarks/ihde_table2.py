@@ -31,12 +31,13 @@ from footfall.hdr.hde import Hde2010Params, HdeParams
 from footfall.hdr.ihde import IhdeParams
 from footfall.hdr.ihde_plus import IhdePlusParams
 from footfall.hdr.jimenez import FilterHdrParams, JimenezParams
+from footfall.hdr.step_heading import HeadingSource
 from footfall.scenarios.paper import IHDE_TABLE_2
 from footfall.scenarios.scenario import Scenario, load_scenario
 
 TESTS = tuple(IHDE_TABLE_2)
 GAITS: Mapping[str, float] = {"people": 1.0, "line": 0.3}  # variability
-SOURCES = ("yaw", "course", "both")
+SOURCES: tuple[HeadingSource, ...] = ("yaw", "course", "both")
 
 HDE_GRID = tuple(
     HdeParams(heading=heading, sigma=radians(sigma)) for heading, sigma in product(SOURCES, (8, 12, 20, 40))
@@ -87,27 +88,27 @@ class Tuned:
     def variants(self) -> dict[str, Way]:
         """What is changed, one thing at a time."""
         ihde, plus = self.ihde, self.plus
-        narrow = radians(5)
         changed: dict[str, Way] = {
-            "ihde": Way(ihde),
+            "hde as it comes": Way(HdeParams()),
+            "ihde as it comes": Way(IhdeParams()),
+            "**ihde as tuned**": Way(ihde),
             "the start: wrong by 5 deg": Way(ihde, start_off_deg=5.0),
             "the start: wrong by 10 deg": Way(ihde, start_off_deg=10.0),
-            "the foot's angle: on the yaw": Way(replace(ihde, heading="yaw")),
-            "the foot's angle: on both": Way(replace(ihde, heading="both")),
+            **{f"the foot's angle: {source}": Way(replace(ihde, heading=source)) for source in SOURCES},
             "the window: W = 3": Way(replace(ihde, window=3)),
             "the window: W = 8": Way(replace(ihde, window=8)),
-            "the window: a / k1 = 1 deg": Way(replace(ihde, a=ihde.k1 * radians(1))),
-            "the window: a / k1 = 3 deg": Way(replace(ihde, a=ihde.k1 * radians(3))),
-            "a direction within 10 deg": Way(replace(ihde, match=2 * narrow)),
-            "a direction within 15 deg": Way(replace(ihde, match=3 * narrow)),
-            "no mean heading fed back": Way(replace(ihde, fallback=False)),
+            "straight: a / k1 = 1 deg": Way(replace(ihde, a=ihde.k1 * radians(1))),
+            "straight: a / k1 = 3 deg": Way(replace(ihde, a=ihde.k1 * radians(3))),
+            "a direction within 10 deg": Way(replace(ihde, match=radians(10))),
+            "a direction within 15 deg": Way(replace(ihde, match=radians(15))),
+            "no mean heading": Way(replace(ihde, fallback=False)),
             "no bias": Way(ihde, bias=0.0),
             "twice the bias": Way(ihde, bias=2.0),
-            "ihde-plus": Way(plus),
-            "ihde-plus, the start wrong by 5 deg": Way(plus, start_off_deg=5.0),
-            "ihde-plus, the start wrong by 10 deg": Way(plus, start_off_deg=10.0),
-            "ihde-plus on the yaw": Way(replace(plus, heading="yaw")),
-            "ihde-plus on both": Way(replace(plus, heading="both")),
+            "ihde-plus as it comes": Way(IhdePlusParams()),
+            "**ihde-plus as tuned**": Way(plus),
+            "ihde-plus, start wrong by 5 deg": Way(plus, start_off_deg=5.0),
+            "ihde-plus, start wrong by 10 deg": Way(plus, start_off_deg=10.0),
+            **{f"ihde-plus on {source}": Way(replace(plus, heading=source)) for source in SOURCES},
             "ihde-plus, no bias": Way(plus, bias=0.0),
             "ihde-plus, twice the bias": Way(plus, bias=2.0),
         }

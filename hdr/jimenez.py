@@ -100,7 +100,7 @@ class JimenezParams:
     heading: HeadingSource = "course"
     window: int = 5
     gate: float = math.radians(3.0)
-    sigma: float = math.radians(2.0)
+    sigma: float = math.radians(4.0)
     scale: float = math.radians(5.0)
     directions: DirectionParams = field(default_factory=DirectionParams)
 

@@ -222,7 +222,7 @@ def test_ihde_is_silent_where_one_heading_stands_out():
 
 
 @pytest.mark.parametrize(
-    ("corrector", "sigma"), [(Hde, 12), (Ihde, 4), (Jimenez, 2), (FilterHdr, math.degrees(0.1))]
+    ("corrector", "sigma"), [(Hde, 12), (Ihde, 4), (Jimenez, 4), (FilterHdr, math.degrees(0.1))]
 )
 def test_how_far_each_is_trusted_unless_told(corrector, sigma):
     assert ask(corrector(), np.zeros(8))[-1][1] == pytest.approx(sigma * DEG)

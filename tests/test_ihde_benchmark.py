@@ -142,7 +142,7 @@ def test_it_runs_from_walks_to_page(scripts, workshop, tmp_path, monkeypatch):
     bench.main([*few, "--page", str(page), "--figures", str(tmp_path / "images"), "--json", str(out)])
     document = json.loads(out.read_text())
     assert set(document["table_2"]["people"]) == set(bench.TESTS)
-    assert "ihde-plus" in document["decides"]["line"]["ihde-test3"]
+    assert "ihde-plus as it comes" in document["decides"]["line"]["ihde-test3"]
     assert np.shape(document["loop"]["hde"]) == (2, 3)
     # The three stand-ins are one and the same path.
     assert document["table_2"]["people"]["ihde-test1"] == document["table_2"]["line"]["ihde-test2"]
