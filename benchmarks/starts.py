@@ -4,10 +4,10 @@ Drawn people stand, walk 6 m, stand for 5 s, walk on for 6 m and stand again, on
 with the physics of the walks. Twist and pitch of a foot are its body's yaw and elevation relative to its pose
 at rest, the largest over all samples (1 kHz) in which it carries at least 0.2 body weights:
 
-- setting out: from the wish to walk until the foot leaves the ground for its first swing (less than 0.2 body
-  weights for 0.1 s), and for the foot that stands first until the other one has landed. Heels rise in
-  push-off: toes-down counts until the last rise of the heel begins (the last run of samples in which the toes
-  only sink), toes-up and twist to the end;
+- setting out, at the start of the walk and after the pause: from the wish to walk until the foot leaves the
+  ground for its first swing (less than 0.2 body weights for 0.1 s), and for the foot that stands first until
+  the other one has landed. Heels rise in push-off: toes-down counts until the last rise of the heel begins
+  (the last run of samples in which the toes only sink), toes-up and twist to the end;
 - last step: from the moment at which the foot, after its last landing (0.05 body weights), first lies within
   3 deg of its pose at rest until the end of the stand.
 
@@ -30,6 +30,7 @@ from footfall.models.body import Ground
 from footfall.models.policy import stock_policy
 from footfall.models.subject import draw_subject
 from footfall.scenarios.path import PathSpec, build_path
+from footfall.simulate._balance_kernels import GO_SPEED
 from footfall.simulate.journey import FallError, Plan, stroll
 from footfall.simulate.steer import Stop, StrayError
 from footfall.streams import stream
@@ -121,7 +122,7 @@ def largest(yaw: np.ndarray, pitch: np.ndarray, load: np.ndarray, heel_rises: bo
     return float(np.abs(yaw[loaded]).max()), max(0.0, float(pitch[loaded].max())), max(0.0, down)
 
 
-def set_out(yaw: np.ndarray, pitch: np.ndarray, load: np.ndarray) -> list[Moved]:
+def set_out(kind: str, yaw: np.ndarray, pitch: np.ndarray, load: np.ndarray) -> list[Moved]:
     """Both feet (2, n) from the wish to walk on."""
     leave = [first_swing(one) for one in load]
     first = int(leave[1] < leave[0])
@@ -132,7 +133,7 @@ def set_out(yaw: np.ndarray, pitch: np.ndarray, load: np.ndarray) -> list[Moved]
         1 - first: min(leave[1 - first], swing + int(landed[0]) if len(landed) else 10**9),
     }
     return [
-        Moved("start", "rl"[f], f == first, *largest(yaw[f, :end], pitch[f, :end], load[f, :end], True))
+        Moved(kind, "rl"[f], f == first, *largest(yaw[f, :end], pitch[f, :end], load[f, :end], True))
         for f, end in ends.items()
     ]
 
@@ -151,35 +152,38 @@ def last_step(yaw: np.ndarray, pitch: np.ndarray, load: np.ndarray) -> list[Move
 def go(job: tuple[str, int]) -> Outcome:
     """Walk once."""
     place, seed = job
-    poses, touches, steady, shifting = [], [], [], []
+    poses, touches, steady, wishes = [], [], [], []
     try:
         for moment in stroll(plan(place, seed), stock_policy(), stand=2.0):
             walkers = moment.walkers
             poses.append(moment.trace.qpos[0])
             touches.append(moment.trace.sensor[0][:, body.SENSOR_TOUCH].reshape(-1, 2, 3).sum(axis=2))
             steady.append(bool(walkers.gate.value[0] <= 0))
-            shifting.append(bool(walkers.setting_out[0]))
+            stood = (
+                len(steady) < 2 or steady[-2]
+            )  # at once, a gait without a shift of weight no longer stands
+            wishes.append(stood and bool(walkers.speed_goal[0] > GO_SPEED))
         fell = False
     except (FallError, StrayError):
         fell = True
     model, k = walkers.models[0], len(poses[0])
     qpos, load = np.concatenate(poses), np.concatenate(touches).T / (model.body_mass.sum() * GRAVITY)
     moved: list[Moved] = []
-    begins = np.flatnonzero(np.diff(np.array(shifting, dtype=int)) == 1) + 1
+    begins = np.flatnonzero(np.diff(np.array(wishes, dtype=int)) == 1) + 1
     ends = [*begins, len(poses)]
-    for begin in begins:
+    for kind, begin in zip(("start", "restart"), begins, strict=False):
         rows = slice(k * begin - 1, k * begin + round(_SET_OUT_S / _STEP_S))
         if rows.stop <= len(qpos):
             angles = feet(model, qpos[rows])
             angles = angles - angles[:, :, :1]
-            moved += set_out(angles[:, 0, 1:], angles[:, 1, 1:], load[:, rows][:, 1:])
+            moved += set_out(kind, angles[:, 0, 1:], angles[:, 1, 1:], load[:, rows][:, 1:])
     for end in ends[1:]:
         rows = slice(k * end - round((PAUSE_S + _STOPPING_S) / _STEP_S), k * end)
         if steady[end - 2] and rows.start > 0:
             angles = feet(model, qpos[rows])
             angles = angles - angles[:, :, -1:]
             moved += last_step(angles[:, 0], angles[:, 1], load[:, rows])
-    led = tuple(one.side for one in moved if one.kind == "start" and one.first)
+    led = tuple(one.side for one in moved if one.kind != "stop" and one.first)
     return Outcome(place, fell, led, tuple(moved))
 
 
@@ -187,6 +191,7 @@ def report(found: Sequence[Outcome]) -> None:
     """One row a place and foot."""
     for kind, title, roles in (
         ("start", "Setting out", {True: "steps first", False: "stands first"}),
+        ("restart", "Setting out after a pause", {True: "steps first", False: "stands first"}),
         ("stop", "The last step", {True: "lands last", False: "has landed"}),
     ):
         table = Table(title=f"{title}: deg, median / 90 % / largest", title_justify="left")
