@@ -65,7 +65,8 @@ def learned_reference(resultant: complex, count: int) -> tuple[float, float]:
     reference : rad, -pi/count to pi/count
     agreement : R, from 0 (evenly spread) to 1 (all along the directions)
     """
-    return cmath.phase(resultant) / count, abs(resultant)
+    # not cmath.phase, which overflows at the least of angles
+    return math.atan2(resultant.imag, resultant.real) / count, abs(resultant)
 
 
 class Directions:

@@ -63,7 +63,8 @@ class StepHeadings:
     @property
     def toe_out(self) -> float | None:
         """By how much the foot points to the left of the course (rad); None while too few strides tell."""
-        return cmath.phase(self._sum) if self._count >= TOLD_BY else None
+        # not cmath.phase, which overflows at the least of angles
+        return math.atan2(self._sum.imag, self._sum.real) if self._count >= TOLD_BY else None
 
     def __call__(self, step: Step) -> float | None:
         """Heading of this step (rad, continuous), which is remembered; None where the step has none."""

@@ -131,6 +131,10 @@ def test_a_learned_reference_is_the_weighted_one():
     assert (reference, agreement) == pytest.approx((0.0, 0.5), abs=1e-12)
 
 
+def test_the_least_of_angles_is_one():
+    assert learned_reference(complex(1.0, 5e-324), 4) == pytest.approx((0.0, 1.0), abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("keys", "message"),
     [

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from walked_steps import DEG, T, walked
 
@@ -34,6 +34,7 @@ def test_the_three_headings_of_a_straight(course, toe_out):
 
 
 @given(ANY, st.floats(-179, 179), st.floats(-3, 3), st.floats(-0.5, 0.5))
+@example(0.0, 0.0, 2.2e-309, 0.0)
 def test_a_toe_out_of_any_angle_is_learned_in_curves_and_under_drift(course, toe_out, turn, drift):
     """Turning by `turn` deg a step while the heading runs away by `drift` deg a step."""
     steps = walked((course + turn * np.arange(15)) * DEG, toe_out * DEG, drift=drift * DEG)
