@@ -99,6 +99,7 @@ class Tuned:
             "the window: W = 8": Way(replace(ihde, window=8)),
             "straight: a / k1 = 1 deg": Way(replace(ihde, a=ihde.k1 * radians(1))),
             "straight: a / k1 = 3 deg": Way(replace(ihde, a=ihde.k1 * radians(3))),
+            "the same, no mean heading": Way(replace(ihde, a=ihde.k1 * radians(3), fallback=False)),
             "a direction within 10 deg": Way(replace(ihde, match=radians(10))),
             "a direction within 15 deg": Way(replace(ihde, match=radians(15))),
             "no mean heading": Way(replace(ihde, fallback=False)),
