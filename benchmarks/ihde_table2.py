@@ -89,6 +89,7 @@ class Tuned:
         """What is changed, one thing at a time."""
         ihde, plus = self.ihde, self.plus
         changed: dict[str, Way] = {
+            "iez, no bias": Way(bias=0.0),
             "hde as it comes": Way(HdeParams()),
             "ihde as it comes": Way(IhdeParams()),
             "**ihde as tuned**": Way(ihde),

@@ -101,6 +101,15 @@ def test_there_is_no_cliff_at_five_degrees():
     assert ask(soon)[0] == [None] * 25
 
 
+def test_it_speaks_where_a_straight_along_a_direction_is_likelier_than_not():
+    """Straights ever further beside a direction: said while the product of the two is above 1/2."""
+    rows = [ask(walked(np.full(12, off * DEG)))[1].rows[-1] for off in np.arange(0, 12, 0.1)]
+    sure = np.array([row.straight * row.along for row in rows])
+    assert ((sure > 0.45) & (sure < 0.5)).any()
+    assert ((sure > 0.5) & (sure < 0.55)).any()
+    np.testing.assert_array_equal([math.isfinite(row.innovation) for row in rows], sure > 0.5)
+
+
 def test_a_corner_starts_anew_and_its_settling_says_nothing():
     course = np.concatenate([np.zeros(20), [45, 110, 80], np.full(15, 90)]) * DEG
     said, corrector = ask(walked(course))
