@@ -66,6 +66,7 @@ def scripts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> SimpleNamespace:
         "hdr_table2",
         "imu_truth",
         "robustness",
+        "starts",
         "stock_units",
         "stops",
         "walker_speed",
@@ -259,6 +260,69 @@ def test_a_stop_on_a_slope_is_one(scripts) -> None:
     found = scripts.stops.stop((place, 1))
     assert not found.fell
     assert len(found.rates) >= 2
+
+
+def test_a_first_step_is_cut_where_a_foot_leaves_the_ground(scripts) -> None:
+    """The right foot leaves at 0.7 s and lands at 1.1 s; what either does after that is no matter.
+
+    Its heel rises from 0.6 s on. A foot that is off the ground for less than 0.1 s has not left it.
+    """
+    t = np.arange(2000) / 1000
+    yaw, pitch, load = np.zeros((3, 2, 2000))
+    load[:] = 0.5
+    load[0, (t >= 0.7) & (t < 1.1)] = 0.0
+    load[0, (t >= 0.3) & (t < 0.39)] = 0.1  # not loaded for a moment: what it does then does not count
+    load[1, t >= 1.2] = 0.0
+    yaw[0] = np.interp(t, [0.5, 0.7, 0.8], [0, -1.5, -20])
+    yaw[0, 350] = 30.0
+    pitch[0] = np.interp(t, [0, 0.2, 0.4, 0.6, 0.7], [0, 1.0, -0.5, -2.0, -12.0])
+    pitch[0, 599] = -1.9  # the last run of samples in which the toes only sink begins here
+    pitch[1] = np.interp(t, [0.8, 1.0, 1.1, 1.3], [0, 0.7, 0.2, -30])
+    yaw[1] = np.interp(t, [1.0, 1.1, 1.2], [0, 0.4, 9])
+    right, left = scripts.starts.set_out(yaw, pitch, load)
+    assert (right.side, right.first, left.side, left.first) == ("r", True, "l", False)
+    assert right.twist == pytest.approx(1.5, abs=0.02)
+    assert right.up == pytest.approx(1.0)
+    assert right.down == pytest.approx(1.99, abs=0.02)
+    assert left.twist == pytest.approx(0.4, abs=0.02)
+    assert left.up == pytest.approx(0.7)
+
+
+def test_a_last_step_is_cut_where_a_landed_foot_lies_flat(scripts) -> None:
+    """Toes-up of the heel that strikes does not count; the foot that lands last is told."""
+    t = np.arange(4000) / 1000
+    yaw, pitch, load = np.zeros((3, 2, 4000))
+    load[:] = 0.5
+    load[0, t < 1.0] = load[1, t < 0.6] = 0.0
+    pitch[0] = np.interp(t, [1.0, 1.2, 1.4], [15.0, 0.0, 0.0])
+    pitch[1] = np.interp(t, [0.6, 2.0, 3.0], [0.0, -1.2, 0.0])
+    yaw[0] = np.interp(t, [1.0, 1.2, 2.0], [9.0, 2.0, 0.0])
+    right, left = scripts.starts.last_step(yaw, pitch, load)
+    assert (right.side, right.first, left.side, left.first) == ("r", True, "l", False)
+    assert right.up == pytest.approx(3.0, abs=0.1)
+    assert right.twist == pytest.approx(2.0 + 7 / 5, abs=0.1)
+    assert (left.twist, left.up) == (0, 0)
+    assert left.down == pytest.approx(1.2)
+
+
+def test_starts_tell_every_foot_at_every_place(
+    scripts, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One person sets out, stops, stands, walks on and stops, uphill."""
+    monkeypatch.setattr(scripts.starts, "PLACES", {"5 % uphill": (0.05, 0.0)})
+    monkeypatch.setattr(scripts.starts, "METRES", 6.0)
+    monkeypatch.setattr(scripts.starts, "AT", 3.0)
+    out = tmp_path / "out.json"
+    scripts.starts.main(["--people", "1", "--processes", "1", "--json", str(out)])
+    assert "1 walks, 0 falls" in capsys.readouterr().out
+    (one,) = json.loads(out.read_text())["starts"]
+    assert (one["place"], one["fell"], len(one["led"])) == ("5 % uphill", False, 1)
+    kinds = [(moved["kind"], moved["first"]) for moved in one["moved"]]
+    assert sorted(kinds[:2]) == [("start", False), ("start", True)]
+    assert {moved["side"] for moved in one["moved"]} == {"r", "l"}
+    assert all(0 <= moved[key] < 5 for moved in one["moved"][:2] for key in ("twist", "up", "down"))
+    ground = scripts.starts.plan("5 % uphill", 1).ground
+    assert np.gradient(ground.heights, axis=1) == pytest.approx(0.05, abs=1e-6)
 
 
 def test_a_fall_is_reported_and_not_averaged(

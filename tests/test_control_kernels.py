@@ -186,7 +186,12 @@ def people(n: int) -> Walkers:
 
 
 def test_walks_are_those_of_the_twin(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two seconds of walking, starting, stopping and standing, physics included."""
+    """Two seconds of walking, starting, stopping and standing, physics included.
+
+    Measured: 8e-14, and 1e-16 to 1e-14 in setting out. The solver stops after four iterations, and now and
+    then a touch-down makes a thousand times as much of such differences: one of eight draws of these people
+    ends at 6e-8, grown in mid-swing after the first step had landed.
+    """
     policy, compiled = stock_policy(), people(5)
     walked = []
     for _ in range(67):
@@ -207,8 +212,8 @@ def test_walks_are_those_of_the_twin(monkeypatch: pytest.MonkeyPatch) -> None:
     plain = people(5)
     for targets, qpos, seen, closing in walked:
         trace = plain.step(policy(plain.observe()))
-        np.testing.assert_allclose(trace.target, targets, rtol=0, atol=1e-7)
-        np.testing.assert_allclose(trace.qpos, qpos, rtol=0, atol=1e-7)
+        np.testing.assert_allclose(trace.target, targets, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(trace.qpos, qpos, rtol=0, atol=1e-9)
         np.testing.assert_allclose(plain.observe(), seen, rtol=0, atol=1e-6)
         np.testing.assert_array_equal(plain.gate.closing, closing)
 

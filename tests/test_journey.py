@@ -12,7 +12,7 @@ from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import SUBJECTS, Subject
 from footfall.pdr.strapdown import integrate
 from footfall.simulate.cache import cached_walk, plan_key
-from footfall.simulate.journey import STAND_S, FallError, Plan, walk
+from footfall.simulate.journey import STAND_S, FallError, Outing, Plan, walk
 from footfall.simulate.route import Route
 from footfall.simulate.steer import Pace, Stop
 from footfall.simulate.truth import runs
@@ -77,6 +77,15 @@ def test_it_pauses_where_it_is_asked_to(short_plan: Plan) -> None:
     # Now and then (seed 8) a stand rocks for some seconds.
     assert np.median(rates) < 0.1
     assert max(rates) < 5.0
+
+
+def test_the_parts_of_variability_are_each_times_the_whole(short_plan: Plan) -> None:
+    """Placement, cadence and toe-out, in this order."""
+    plan = replace(short_plan, variability=0.5, placement_variability=0.2, toe_out_variability=1.6)
+    level = Outing(plan, stock_policy().feedback_gains, stand=1.0).walkers.variability.level
+    np.testing.assert_allclose(level, [[0.1, 0.5, 0.8]])
+    level = Outing(replace(plan, cadence_variability=0.0), stock_policy().feedback_gains, stand=1.0)
+    np.testing.assert_allclose(level.walkers.variability.level, [[0.1, 0.0, 0.8]])
 
 
 def test_it_changes_its_pace_where_it_is_asked_to(short_plan: Plan) -> None:
@@ -254,8 +263,11 @@ def test_the_key_knows_everything_that_matters(short_plan: Plan) -> None:
             replace(short_plan, rate_hz=100.0),
             replace(short_plan, mount=MOUNTS["heel"]),
             replace(short_plan, wander=0.11),
+            replace(short_plan, placement_variability=0.9),
+            replace(short_plan, cadence_variability=0.9),
+            replace(short_plan, toe_out_variability=0.9),
             replace(short_plan, subject=SUBJECTS["taller"]),
             replace(short_plan, route=replace(short_plan.route, x=short_plan.route.x + 1e-9)),
         )
     }
-    assert len(keys) == 7
+    assert len(keys) == 10

@@ -223,6 +223,16 @@ def test_temperatures_are_used_in_turn_and_one_serves_every_walk(own):
     assert [scenario.temperature_of(walk) for walk in range(4)] == [warm, cold, warm, cold]
 
 
+def test_variability_arrives_in_the_plan_whole_and_in_parts(own):
+    names = ("variability", "placement_variability", "cadence_variability", "toe_out_variability")
+    for values in ((1.0, 1.0, 1.0, 1.0), (0.3, 0.5, 2.0, 0.0)):
+        keys = "".join(
+            f"{name} = {value}\n" for name, value in zip(names, values, strict=True) if value != 1.0
+        )
+        plan = load_scenario(own(("pace_m_s = 1.2", f"pace_m_s = 1.2\n{keys}"))).plan(0)
+        assert tuple(getattr(plan, name) for name in names) == values
+
+
 def test_the_side_of_a_bias_shift_is_its_units(own):
     keys = 'imu = "nimu"\nbias_time_s = 4.0\nbias_shift_deg_s = 0.2'
     scenario = load_scenario(own(('imu = "nimu"', keys)))
@@ -297,6 +307,21 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
         ),
         ("pace_m_s = 1.2", "pace_m_s = 1.2\nwander_m = 0.6", r"gait.wander_m = 0.6: .* equal to 0.5"),
         ("pace_m_s = 1.2", 'pace_m_s = 1.2\nwander_m = "0.1"', r"gait.wander_m = '0.1': .* valid number"),
+        (
+            "pace_m_s = 1.2",
+            "pace_m_s = 1.2\nplacement_variability = -0.1",
+            r"gait.placement_variability = -0.1: .* greater than or equal to 0",
+        ),
+        (
+            "pace_m_s = 1.2",
+            "pace_m_s = 1.2\ncadence_variability = 2.1",
+            r"gait.cadence_variability = 2.1: .* less than or equal to 2",
+        ),
+        (
+            "pace_m_s = 1.2",
+            "pace_m_s = 1.2\ntoe_out_variability = nan",
+            r"gait.toe_out_variability = nan: .* finite",
+        ),
         ("pace_m_s = 1.2", "pace_m_s = 1.2\nwander_m = []", r"gait.wander_m: .* at least 1"),
         (
             "pace_m_s = 1.2",

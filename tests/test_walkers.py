@@ -27,13 +27,11 @@ from footfall.models.subject import Build, Habits
 from footfall.simulate._balance_kernels import Balance, balance_of, feedback
 from footfall.simulate._gait_kernels import targets_all
 from footfall.simulate._look_kernels import land_all, look_all
-from footfall.simulate._variability_kernels import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD
 from footfall.simulate.env import balance_gains
 from footfall.simulate.feedback import GAIN_SHAPE, GAIN_START, SERVO_MIRROR, SERVO_SIGN, Gains, gain_records
 from footfall.simulate.ground import Look
 from footfall.simulate.observation import MIRROR, N_OBSERVATION, SIGN
 from footfall.simulate.state import WALKER, Columns
-from footfall.simulate.variability import Variability
 from footfall.simulate.walkers import N_ACTION, Walkers
 
 
@@ -163,37 +161,6 @@ def test_feedback_is_affine_in_its_gains(values: list[float]) -> None:
     first, second = np.array(GAIN_START), np.linspace(-1, 1, len(Gains._fields))
     together = offsets(first + second) + offsets(0 * first)
     np.testing.assert_allclose(together, offsets(first) + offsets(second), atol=1e-12)
-
-
-def test_variability_has_the_stated_spread() -> None:
-    """Targets drawn over many steps scatter as people's do about their habits; level 0 is a metronome."""
-    n = 4000
-    everyone, rng = np.ones(n, dtype=bool), np.random.default_rng(1)
-    habits = Habits(cadence=1.03, step_width=0.01, toe_out=0.1, asymmetry=0.0)
-    state = np.zeros((2, n), WALKER)
-    lively, still = Variability(state[0]), Variability(state[1])
-    lively.place(everyone, np.ones(n), [habits] * n)
-    still.place(everyone, np.zeros(n), [habits] * n)
-    for half in np.arange(40) % 2:
-        state["next_phase"] = half / 2
-        for group in (lively, still):
-            group.draw(np.arange(n), rng)
-    assert lively.target[:, 0].std() == pytest.approx(np.hypot(CADENCE_SD, CADENCE_SLOW_SD), rel=0.05)
-    assert lively.target[:, 0].mean() == pytest.approx(0.03, abs=0.003)
-    assert lively.target[:, 3].std() == pytest.approx(TOE_OUT_SD, rel=0.05)
-    np.testing.assert_allclose(still.target, np.tile([0.03, 0, 0.01, 0.1, 0.1], (n, 1)), atol=1e-12)
-
-
-def test_asymmetry_makes_one_step_quicker_than_the_other() -> None:
-    state = np.zeros(1, WALKER)
-    one = Variability(state)
-    one.place(np.ones(1, dtype=bool), np.zeros(1), [Habits(asymmetry=0.02)])
-    rng, cadence = np.random.default_rng(0), []
-    for half in (0, 1):
-        state["next_phase"] = half / 2
-        one.draw(np.arange(1), rng)
-        cadence.append(one.target[0, 0])
-    assert cadence == pytest.approx([0.02, -0.02])
 
 
 @pytest.mark.parametrize("grade", [0.0, 0.05, 0.08])
@@ -364,21 +331,3 @@ def test_a_file_that_is_no_policy_is_refused(tmp_path: Path) -> None:
         load_policy(bad)
     with pytest.raises(InputError, match=r"absent\.npz"):
         load_policy(tmp_path / "absent.npz")
-
-
-@pytest.mark.parametrize(("part", "moved"), [(0, [1, 2]), (1, [0]), (2, [3, 4])])
-def test_each_part_of_variability_moves_its_own(part: int, moved: list[int]) -> None:
-    """Placement: hip excursion and step width; cadence; toe-out of either foot. Twice as much: twice."""
-    n, spread = 2000, []
-    for level in (0.5, 1.0):
-        state, rng = np.zeros(n, WALKER), np.random.default_rng(2)
-        people = Variability(state)
-        levels = np.zeros((n, 3))
-        levels[:, part] = level
-        people.place(np.ones(n, dtype=bool), levels, [Habits()] * n)
-        for half in (0.0, 0.5, 0.0, 0.5):
-            state["next_phase"] = half
-            people.draw(np.arange(n), rng)
-        spread.append(people.target.std(axis=0))
-    assert set(np.flatnonzero(spread[0])) == set(moved)
-    np.testing.assert_allclose(spread[1][moved], 2 * spread[0][moved], rtol=0.06)
