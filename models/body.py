@@ -190,7 +190,6 @@ def build_body(
     add_torso_looks(torso)
     for side in "rl":
         _add_arm(torso, side, build)
-
     _keep_shoes_apart(spec)
 
     for name, servo in SERVOS.items():
