@@ -9,12 +9,17 @@ from types import ModuleType
 import mujoco
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from footfall.conventions import GRAVITY
-from footfall.models.body import JOINTS, SENSOR_TOUCH, SERVO_JOINT, build_body
+from footfall.models.body import JOINTS, N_SERVOS, SENSOR_TOUCH, SERVO_JOINT, SERVOS, build_body
 from footfall.models.policy import stock_policy
 from footfall.models.subject import Build, Subject, draw_subject
+from footfall.simulate._gait_kernels import REFERENCE
+from footfall.simulate._start_kernels import hold_feet, set_out
 from footfall.simulate.journey import Plan, stroll
+from footfall.simulate.state import WALKER, Columns
 from footfall.simulate.walkers import Walkers
 
 STEP = 0.0025  # s of physics
@@ -186,6 +191,60 @@ def test_the_slow_first_step_is_the_walks_and_after_a_stop_the_gaits_own() -> No
         until(False, 9.0)
     assert 0.1 < 0.03 * waits[0] <= 0.55
     assert waits[1] == 1
+
+
+@pytest.mark.parametrize("left_first", [False, True])
+def test_setting_out_lasts_until_the_foot_that_steps_first_has_landed(left_first: bool) -> None:
+    """Through its swing and, where it lands late, through three tenths of the next step at most."""
+    cases = [  # whether the other foot stands by now, load on the foot that steps (N), phase of the step
+        (False, 300.0, 0.1, True),
+        (False, 0.0, 0.9, True),
+        (False, 300.0, 0.95, True),
+        (True, 0.0, 0.05, True),
+        (True, 30.0, 0.05, True),
+        (True, 50.0, 0.05, False),
+        (True, 0.0, 0.35, False),
+    ]
+    state = np.zeros(len(cases), WALKER)
+    state["weight"], state["gate"], state["setting_out"], state["left_first"] = 700.0, 0.5, True, left_first
+    state["left_stance"] = [left_first != other for other, *_ in cases]
+    ball = SENSOR_TOUCH.start + 1
+    state["sensor"][:, ball if left_first else ball + 3] = [load for _, load, *_ in cases]
+    state["sensor"][:, ball + 3 if left_first else ball] = 400.0
+    set_out(Columns(state), np.ones(len(cases), dtype=bool), np.array([phase for *_, phase, _ in cases]))
+    assert state["setting_out"].tolist() == [lasts for *_, lasts in cases]
+
+
+@settings(max_examples=50)
+@given(st.integers(0, 2**32 - 1))
+def test_torques_of_a_loaded_foot_leave_its_pressure_under_it(seed: int) -> None:
+    """Of who sets out, feet that stand or carry 0.2 body weights; no other target is touched."""
+    rng, n = np.random.default_rng(seed), 8
+    state = np.zeros(n, WALKER)
+    state["weight"], state["setting_out"], state["left_first"] = 700.0, *(rng.random((2, n)) < 0.7)
+    state["qpos"] = rng.normal(0, 0.2, state["qpos"].shape)
+    touch = rng.uniform(0, 100, (n, 6))
+    state["sensor"][:, SENSOR_TOUCH] = touch
+    wanted = rng.normal(0, 0.4, (n, 3, N_SERVOS))
+    found = wanted.copy()
+    hold_feet(Columns(state), REFERENCE.view(np.recarray)[0], np.moveaxis(found, 0, -1))
+    torque = REFERENCE["kp"] * (found - state["qpos"][:, None, 7 + SERVO_JOINT])
+    load = touch.reshape(n, 2, 3).sum(axis=2)
+    free = np.ones(found.shape, dtype=bool)
+    for foot, side in enumerate("rl"):
+        stands = state["left_first"] == (side == "l")
+        held = state["setting_out"] & (stands | (load[:, foot] > 140))
+        force = np.maximum(load[:, foot], 140)[held, None]
+        for name, low, high in (
+            ("ankle", -0.1, -0.005),
+            ("hip_rotation", -0.01, 0.01),
+            ("subtalar", -0.02, 0.02),
+        ):
+            servo = list(SERVOS).index(f"{name}_{side}")
+            assert (torque[held][:, :, servo] >= low * force - 1e-9).all()
+            assert (torque[held][:, :, servo] <= high * force + 1e-9).all()
+            free[held, :, servo] = False
+    np.testing.assert_array_equal(found[free], wanted[free])
 
 
 # Shoes
