@@ -279,7 +279,7 @@ def test_a_first_step_is_cut_where_a_foot_leaves_the_ground(scripts) -> None:
     pitch[0, 599] = -1.9  # the last run of samples in which the toes only sink begins here
     pitch[1] = np.interp(t, [0.8, 1.0, 1.1, 1.3], [0, 0.7, 0.2, -30])
     yaw[1] = np.interp(t, [1.0, 1.1, 1.2], [0, 0.4, 9])
-    right, left = scripts.starts.set_out(yaw, pitch, load)
+    right, left = scripts.starts.set_out("start", yaw, pitch, load)
     assert (right.side, right.first, left.side, left.first) == ("r", True, "l", False)
     assert right.twist == pytest.approx(1.5, abs=0.02)
     assert right.up == pytest.approx(1.0)
@@ -316,9 +316,10 @@ def test_starts_tell_every_foot_at_every_place(
     scripts.starts.main(["--people", "1", "--processes", "1", "--json", str(out)])
     assert "1 walks, 0 falls" in capsys.readouterr().out
     (one,) = json.loads(out.read_text())["starts"]
-    assert (one["place"], one["fell"], len(one["led"])) == ("5 % uphill", False, 1)
+    assert (one["place"], one["fell"], len(one["led"])) == ("5 % uphill", False, 2)
     kinds = [(moved["kind"], moved["first"]) for moved in one["moved"]]
     assert sorted(kinds[:2]) == [("start", False), ("start", True)]
+    assert sorted(kinds[2:4]) == [("restart", False), ("restart", True)]
     assert {moved["side"] for moved in one["moved"]} == {"r", "l"}
     assert all(0 <= moved[key] < 5 for moved in one["moved"][:2] for key in ("twist", "up", "down"))
     ground = scripts.starts.plan("5 % uphill", 1).ground
