@@ -110,6 +110,13 @@ def test_it_speaks_where_a_straight_along_a_direction_is_likelier_than_not():
     np.testing.assert_array_equal([math.isfinite(row.innovation) for row in rows], sure > 0.5)
 
 
+def test_the_heading_grows_uncertain_from_the_last_correction_on():
+    """Each step of a straight is one: a stride's time counts, not that since the start."""
+    _, corrector = ask(walked(np.zeros(60)))
+    assert corrector.rows[-1].along == pytest.approx(direction_probability(0.0, T, 10, PARAMS))
+    assert corrector.rows[8].along == pytest.approx(direction_probability(0.0, 8 * T, 5, PARAMS))
+
+
 def test_a_corner_starts_anew_and_its_settling_says_nothing():
     course = np.concatenate([np.zeros(20), [45, 110, 80], np.full(15, 90)]) * DEG
     said, corrector = ask(walked(course))
