@@ -20,6 +20,7 @@ measure() { # name, command
 measure gait python benchmarks/gait_realism.py --docs docs
 measure stops python benchmarks/stops.py
 measure starts python benchmarks/starts.py
+measure scatter python benchmarks/scatter.py
 measure courses python benchmarks/courses.py
 measure units python benchmarks/stock_units.py
 units=$(grep '^units = ' "$out/units.txt")
