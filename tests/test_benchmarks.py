@@ -22,6 +22,7 @@ from footfall.scenarios.scenario import load_scenario
 from footfall.scenarios.score import compare, score
 from footfall.simulate.cache import cached_walk
 from footfall.simulate.journey import FallError
+from footfall.simulate.walk import TrueFootfalls
 from footfall.simulate.record import record
 from footfall.simulate.walk import TrueFootfalls
 
@@ -66,6 +67,7 @@ def scripts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> SimpleNamespace:
         "hdr_table2",
         "imu_truth",
         "robustness",
+        "scatter",
         "starts",
         "stock_units",
         "stops",
@@ -361,3 +363,19 @@ def test_a_script_runs_from_the_shell_over_two_processes(short: str, tmp_path: P
     ]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)
     assert "2 of 2" in done.stdout
+
+
+def test_scatter_is_that_of_the_strides_in_the_middle(scripts, capsys: pytest.CaptureFixture[str]) -> None:
+    """Strides that turn by +-0.02 rad in turn, feet turned by +-0.03 rad; what sets out and stops is left out."""
+    n = 41
+    side = np.where(np.arange(n) % 2 == 0, 1.0, -1.0)
+    x, y = 1.4 * np.arange(n), 0.5 * 1.4 * np.tan(0.02) * side
+    heading, t = 0.5 + 0.03 * side, 1.1 * np.arange(n) + 0.01 * side
+    y[:2], heading[-2:] = 5.0, 2.0
+    falls = TrueFootfalls(t, np.column_stack([x, y, 0 * x]), heading)
+    course, yaw, stride = scripts.scatter.scatter(falls)
+    assert course == pytest.approx(np.degrees(0.02), rel=0.02)
+    assert yaw == pytest.approx(np.degrees(0.03), rel=0.02)
+    assert stride == pytest.approx(20.0, rel=0.02)
+    scripts.scatter.report([scripts.scatter.Scatter("reference", 1.3, 0.1, 1, course, yaw, stride)])
+    assert "1.1 (1.1 to 1.1)" in capsys.readouterr().out
