@@ -22,7 +22,6 @@ from footfall.scenarios.scenario import load_scenario
 from footfall.scenarios.score import compare, score
 from footfall.simulate.cache import cached_walk
 from footfall.simulate.journey import FallError
-from footfall.simulate.walk import TrueFootfalls
 from footfall.simulate.record import record
 from footfall.simulate.walk import TrueFootfalls
 
@@ -366,7 +365,7 @@ def test_a_script_runs_from_the_shell_over_two_processes(short: str, tmp_path: P
 
 
 def test_scatter_is_that_of_the_strides_in_the_middle(scripts, capsys: pytest.CaptureFixture[str]) -> None:
-    """Strides that turn by +-0.02 rad in turn, feet turned by +-0.03 rad; what sets out and stops is left out."""
+    """Strides turn by +-0.02 rad, feet by +-0.03 rad; what sets out and stops is left out."""
     n = 41
     side = np.where(np.arange(n) % 2 == 0, 1.0, -1.0)
     x, y = 1.4 * np.arange(n), 0.5 * 1.4 * np.tan(0.02) * side
@@ -378,4 +377,4 @@ def test_scatter_is_that_of_the_strides_in_the_middle(scripts, capsys: pytest.Ca
     assert yaw == pytest.approx(np.degrees(0.03), rel=0.02)
     assert stride == pytest.approx(20.0, rel=0.02)
     scripts.scatter.report([scripts.scatter.Scatter("reference", 1.3, 0.1, 1, course, yaw, stride)])
-    assert "1.1 (1.1 to 1.1)" in capsys.readouterr().out
+    assert "1.2 (1.2 to 1.2)" in capsys.readouterr().out
