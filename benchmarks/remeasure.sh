@@ -34,6 +34,7 @@ measure hdr_table2 python benchmarks/hdr_table2.py --mounts instep --figure docs
 measure swaying python benchmarks/swaying.py --page docs/swaying.md --figure docs/images/swaying.png
 measure iez python benchmarks/iez_false_bias.py --page docs/iez.md --figures docs/images
 measure ihde python benchmarks/ihde_table2.py --page docs/ihde.md --figures docs/images
+measure perfect_imu python benchmarks/perfect_imu.py
 measure truth python benchmarks/imu_truth.py
 measure speed python benchmarks/walker_speed.py
 measure robustness python benchmarks/robustness.py --seeds 20

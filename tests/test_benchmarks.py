@@ -66,6 +66,7 @@ def scripts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> SimpleNamespace:
         "hdr_table2",
         "imu_truth",
         "robustness",
+        "perfect_imu",
         "scatter",
         "starts",
         "stock_units",
@@ -378,3 +379,21 @@ def test_scatter_is_that_of_the_strides_in_the_middle(scripts, capsys: pytest.Ca
     assert stride == pytest.approx(20.0, rel=0.02)
     scripts.scatter.report([scripts.scatter.Scatter("reference", 1.3, 0.1, 1, course, yaw, stride)])
     assert "1.2 (1.2 to 1.2)" in capsys.readouterr().out
+
+
+def test_a_perfect_imu_leaves_what_is_the_methods_own(scripts, short: str, tmp_path: Path) -> None:
+    """On a short walk next to nothing, and a track that is turned by 5 deg is told as it is."""
+    scenario = load_scenario(short)
+    walk = cached_walk(scenario.plan(0))
+    recording = record(walk, draw_unit(load_spec("perfect"), 1), seed=1)
+    track = methods.track(recording, "pdr", start_pose(walk))
+    own = scripts.perfect_imu.own("short", 1, "pdr", track, walk)
+    assert own.first_heading_deg < 0.01
+    assert abs(own.distance_error_pct) < 0.5
+    turned = replace(track, heading=track.heading + np.radians(5))
+    off = scripts.perfect_imu.own("short", 1, "pdr", turned, walk)
+    assert off.first_heading_deg == pytest.approx(5, abs=0.01)
+    moved = replace(track, position=track.position + np.array([0.0, 10.0, 0.0]))
+    walked = np.hypot(*np.diff(compare(track, walk).truth, axis=0).T).sum()
+    far = scripts.perfect_imu.own("short", 1, "pdr", moved, walk).largest_position_pct
+    assert far == pytest.approx(1000 / walked, rel=0.05)
