@@ -21,15 +21,15 @@ from footfall.errors import InputError
 from footfall.hdr.methods import Reckoning, pdr_track
 from footfall.models.imu import draw_unit, load_spec
 from footfall.models.policy import stock_policy
+from footfall.models.route import Route
 from footfall.pdr.footfalls import Footfalls
-from footfall.scenarios.paper import UNCORRECTED_AVERAGE_RANGE, UNCORRECTED_FINAL_RANGE
+from footfall.scenarios.judge.papers import UNCORRECTED_AVERAGE_RANGE, UNCORRECTED_FINAL_RANGE
+from footfall.scenarios.judge.score import compare
 from footfall.scenarios.run import start_pose
 from footfall.scenarios.scenario import Scenario
-from footfall.scenarios.score import compare
 from footfall.simulate.cache import cached_walk
-from footfall.simulate.journey import versions
 from footfall.simulate.record import record
-from footfall.simulate.route import Route
+from footfall.simulate.walking import versions
 
 J = TypeVar("J")
 R = TypeVar("R")

@@ -17,12 +17,12 @@ measure() { # name, command
     "$@" >"$out/$name.txt"
 }
 
-measure gait python benchmarks/gait_realism.py --docs docs
-measure stops python benchmarks/stops.py
-measure starts python benchmarks/starts.py
-measure scatter python benchmarks/scatter.py
-measure courses python benchmarks/courses.py
-measure units python benchmarks/stock_units.py
+measure gait python -m benchmarks.validation.gait_realism --docs docs
+measure stops python -m benchmarks.validation.stops
+measure starts python -m benchmarks.validation.starts
+measure scatter python -m benchmarks.validation.scatter
+measure courses python -m benchmarks.validation.courses
+measure units python -m benchmarks.validation.stock_units
 units=$(grep '^units = ' "$out/units.txt")
 fit=$(sed -nE 's/^([0-9]+) of ([0-9]+) units fit.*/\1 of the \2 drawn fit./p' "$out/units.txt")
 sed -i "s/^units = .*/$units/; s/^# at)\. .*/# at). $fit/" scenarios/stock/closed-loop.toml
@@ -30,14 +30,14 @@ measure closed-loop footfall run closed-loop --out "$out/closed-loop"
 cp "$out"/closed-loop/{maps,heading_error,controller,drift_budget}.png docs/images/
 measure gentle footfall run closed-loop-gentle --walks 2 --units 20 --out "$out/gentle"
 measure perfect footfall run closed-loop --imu perfect --units 0 --noises 0 --methods pdr,hdr,iez --out "$out/perfect"
-measure hdr_table2 python benchmarks/hdr_table2.py --mounts instep --figure docs/images/hdr_table2.png --page docs/results.md
-measure swaying python benchmarks/swaying.py --page docs/swaying.md --figure docs/images/swaying.png
-measure iez python benchmarks/iez_false_bias.py --page docs/iez.md --figures docs/images
-measure ihde python benchmarks/ihde_table2.py --page docs/ihde.md --figures docs/images
-measure perfect_imu python benchmarks/perfect_imu.py
-measure truth python benchmarks/imu_truth.py
-measure speed python benchmarks/walker_speed.py
-measure robustness python benchmarks/robustness.py --seeds 20
-measure pushes python benchmarks/robustness.py straight --metres 400 --push 10 --seeds 4
+measure hdr_table2 python -m benchmarks.papers.hdr_table2 --mounts instep --figure docs/images/hdr_table2.png --page docs/results.md
+measure swaying python -m benchmarks.papers.swaying --page docs/swaying.md --figure docs/images/swaying.png
+measure iez python -m benchmarks.papers.iez_false_bias --page docs/iez.md --figures docs/images
+measure ihde python -m benchmarks.papers.ihde_table2 --page docs/ihde.md --figures docs/images
+measure perfect_imu python -m benchmarks.validation.perfect_imu
+measure truth python -m benchmarks.validation.imu_truth
+measure speed python -m benchmarks.speed.walker
+measure robustness python -m benchmarks.validation.robustness --seeds 20
+measure pushes python -m benchmarks.validation.robustness straight --metres 400 --push 10 --seeds 4
 measure tutorial python docs/examples/spare_torque.py --seed 1 --out "$out/residual.npz" --page docs/tutorial_environment.md
 measure render footfall render straight -o docs/images/walker.png

@@ -11,6 +11,6 @@ __version__ = "0.1.0"
 _register(
     id="footfall/Walk-v0",
     entry_point="footfall.scenarios.environment:walk_env",
-    vector_entry_point="footfall.simulate.env:WalkVectorEnv",
+    vector_entry_point="footfall.simulate.learn.env:WalkVectorEnv",
     max_episode_steps=333,
 )

@@ -11,9 +11,9 @@ def forget_stale(*rooms: Path) -> None:
     numba looks only at the file that a kernel stands in. What the kernel calls or reads elsewhere may have
     changed since, as after an update of a checkout, and would silently stay as it was.
     """
-    sources = [path.stat().st_mtime for room in rooms for path in room.glob("*.py")]
+    sources = [path.stat().st_mtime for room in rooms for path in room.rglob("*.py")]
     for room in rooms:
-        for index in (room / "__pycache__").glob("*.nbi"):
+        for index in room.rglob("__pycache__/*.nbi"):
             try:
                 if index.stat().st_mtime < max(sources):
                     index.unlink()

@@ -15,7 +15,7 @@ from footfall.hdr.streamed import StreamedReckoning
 from footfall.hdr.tracks import Reckoning, told
 from footfall.pdr.detectors import require_detector
 from footfall.pdr.footfalls import Footfalls
-from footfall.pdr.pdr import PdrParams, StartPose
+from footfall.pdr.reckoning import PdrParams, StartPose
 from footfall.pdr.rest import still_time
 from footfall.pdr.stream import dead_reckon_blocks
 from footfall.pdr.track import Track

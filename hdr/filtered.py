@@ -8,8 +8,8 @@ import numpy as np
 
 from footfall import __version__
 from footfall.identity import plain
-from footfall.pdr.filtering import Filtered
-from footfall.pdr.ins import FilterSettings
+from footfall.pdr.filter.ins import FilterSettings
+from footfall.pdr.filter.run import Filtered
 from footfall.pdr.track import Track
 
 FILTER_UNITS: Mapping[str, str] = {

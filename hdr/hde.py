@@ -16,7 +16,7 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams, Directions, deviation
 from footfall.hdr.step_heading import HeadingSource, StepHeadings, require_source
-from footfall.pdr.filtering import Step
+from footfall.pdr.filter.run import Step
 from footfall.pdr.footfalls import Footfalls
 
 

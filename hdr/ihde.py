@@ -17,7 +17,7 @@ from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams, Directions
 from footfall.hdr.step_heading import HeadingSource, StepHeadings, require_source
 from footfall.hdr.straightness import bell_membership, circular_mean, circular_std, z_membership
-from footfall.pdr.filtering import Step
+from footfall.pdr.filter.run import Step
 
 
 @dataclass(frozen=True)

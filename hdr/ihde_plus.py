@@ -31,7 +31,7 @@ from typing import NamedTuple
 from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams, Directions
 from footfall.hdr.step_heading import HeadingSource, StepHeadings, require_source
-from footfall.pdr.filtering import Step
+from footfall.pdr.filter.run import Step
 
 SHORT, LONG = 10, 20  # windows, in steps
 LEAST = 5  # headings before anything is said

@@ -26,8 +26,8 @@ from footfall.hdr.tracks import (
     told,
 )
 from footfall.pdr.detectors import Shoe
-from footfall.pdr.ins import FilterSettings
-from footfall.pdr.pdr import PdrParams, StartPose
+from footfall.pdr.filter.ins import FilterSettings
+from footfall.pdr.reckoning import PdrParams, StartPose
 from footfall.pdr.track import Track
 from footfall.recording import Recording
 

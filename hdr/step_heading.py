@@ -15,7 +15,7 @@ from typing import Literal
 
 from footfall.conventions import wrap
 from footfall.errors import InputError
-from footfall.pdr.filtering import Step
+from footfall.pdr.filter.run import Step
 
 HeadingSource = Literal["yaw", "course", "both"]
 

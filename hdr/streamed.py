@@ -9,7 +9,7 @@ from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams
 from footfall.hdr.tracks import UNTOLD, Reckoning
 from footfall.pdr.footfalls import Footfalls
-from footfall.pdr.pdr import StartPose
+from footfall.pdr.reckoning import StartPose
 from footfall.recording import Recording
 
 

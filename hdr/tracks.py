@@ -18,10 +18,10 @@ from footfall.hdr.filtered import filter_track
 from footfall.hdr.hde import HDE_2010_UNITS, Hde2010Params, hde_2010
 from footfall.hdr.hdr import HdrParams, trace
 from footfall.identity import plain
-from footfall.pdr.filtering import Corrector, Filtered, Step, run_filter
+from footfall.pdr.filter.ins import FilterSettings
+from footfall.pdr.filter.run import Corrector, Filtered, Step, run_filter
 from footfall.pdr.footfalls import Footfalls
-from footfall.pdr.ins import FilterSettings
-from footfall.pdr.pdr import Detected, PdrParams, StartPose, dead_reckon, detect
+from footfall.pdr.reckoning import Detected, PdrParams, StartPose, dead_reckon, detect
 from footfall.pdr.track import Track
 from footfall.recording import Recording
 

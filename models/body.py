@@ -15,7 +15,15 @@ import numpy as np
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
-from footfall.models.looks import SHIRT, SHOE, SKIN, TROUSERS, add_look, add_sky_and_paving, add_torso_looks
+from footfall.models.appearance import (
+    SHIRT,
+    SHOE,
+    SKIN,
+    TROUSERS,
+    add_look,
+    add_sky_and_paving,
+    add_torso_looks,
+)
 from footfall.models.subject import REFERENCE_HEIGHT_M, Build
 
 # Joint names, in the order of qpos after the free joint. Right leg first: it carries the IMU by default.

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from footfall.errors import InputError
-from footfall.pdr.pdr import REST_ACCEL, REST_BLOCK_S, REST_GYRO
+from footfall.pdr.reckoning import REST_ACCEL, REST_BLOCK_S, REST_GYRO
 from footfall.recording import Recording
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.pdr import _kernels
 from footfall.pdr.footfalls import Footfalls
-from footfall.pdr.pdr import (
+from footfall.pdr.reckoning import (
     PdrParams,
     Rest,
     StartPose,

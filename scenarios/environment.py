@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from footfall.scenarios.scenario import load_scenario
-from footfall.simulate.walk_env import WalkEnv
+from footfall.simulate.learn.walk_env import WalkEnv
 
 
 def walk_env(**settings: Any) -> WalkEnv:

@@ -19,7 +19,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from footfall.errors import InputError
-from footfall.simulate.route import Route
+from footfall.models.route import Route
 from footfall.toml import Strict
 
 MIN_RADIUS_M = 1.5  # of an arc that is walked as such; corners may be sharper

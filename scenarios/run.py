@@ -16,12 +16,12 @@ from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams
 from footfall.hdr.methods import Reckoning, require_methods, tracks
 from footfall.models.imu import draw_unit, load_spec
-from footfall.pdr.ins import FilterSettings
-from footfall.pdr.pdr import PdrParams, StartPose
+from footfall.pdr.filter.ins import FilterSettings
+from footfall.pdr.reckoning import PdrParams, StartPose
 from footfall.pdr.track import Track
 from footfall.recording import Recording
+from footfall.scenarios.judge.score import Score, score
 from footfall.scenarios.scenario import Scenario
-from footfall.scenarios.score import Score, score
 from footfall.simulate.budget import DriftBudget
 from footfall.simulate.cache import cached_walk
 from footfall.simulate.record import BIAS_TIME, record, record_with_budget

@@ -18,10 +18,10 @@ from footfall.models.imu import TemperatureProfile, load_spec, stock_specs
 from footfall.models.subject import SHOES, SUBJECTS, Subject
 from footfall.scenarios.path import Path, PathSpec, build_path
 from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height
-from footfall.simulate.journey import PHYSICS_STEP, Plan
 from footfall.simulate.record import BIAS_TIME
-from footfall.simulate.steer import Pace, Stop
 from footfall.simulate.truth import divisor
+from footfall.simulate.walker.steering import Pace, Stop
+from footfall.simulate.walking import PHYSICS_STEP, Plan
 from footfall.toml import Strict, read_toml
 
 STOCK = File(__file__).parent / "stock"

@@ -19,10 +19,10 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.models import body
 from footfall.models.body import Ground, build_body
+from footfall.models.route import Route
 from footfall.models.subject import Build
-from footfall.simulate.journey import Outing
-from footfall.simulate.route import Route
-from footfall.simulate.walkers import CONTROL_INTERVAL, Walkers
+from footfall.simulate.walker.walkers import CONTROL_INTERVAL, Walkers
+from footfall.simulate.walking import Outing
 
 # (azimuth from the walker's heading in degrees, elevation in degrees, distance in m)
 View = tuple[float, float, float]

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from tests.helpers.places import ROOT
+
 # Compilation and a busy machine make single examples slow; no test judges by the clock.
 settings.register_profile("footfall", deadline=None)
 settings.load_profile("footfall")
@@ -16,7 +18,7 @@ settings.load_profile("footfall")
 @pytest.fixture(scope="session")
 def real_data() -> Path:
     """The folder of real recordings, which only developers have beside their checkout."""
-    folder = Path(__file__).resolve().parents[2] / "shared" / "data"
+    folder = ROOT.parent / "shared" / "data"
     if not folder.is_dir():
         pytest.skip("no real recordings beside this checkout")
     return folder
@@ -26,7 +28,7 @@ def real_data() -> Path:
 def short_plan():  # type: ignore[no-untyped-def]
     """A 40 m walk with one 90 degree corner, people's variability, 26 s of calibration."""
     from footfall.scenarios.path import PathSpec, build_path
-    from footfall.simulate.journey import Plan
+    from footfall.simulate.walking import Plan
 
     elements = [
         {"kind": "straight", "length_m": 20.0},
@@ -40,7 +42,7 @@ def short_plan():  # type: ignore[no-untyped-def]
 @pytest.fixture(scope="session")
 def short_walk(short_plan):  # type: ignore[no-untyped-def]
     """The walk of `short_plan`."""
-    from footfall.simulate.journey import walk
+    from footfall.simulate.walking import walk
 
     return walk(short_plan)
 
@@ -57,7 +59,7 @@ def cache(tmp_path_factory):  # type: ignore[no-untyped-def]
 @pytest.fixture
 def cli(capsys):  # type: ignore[no-untyped-def]
     """Run a command line in this process: `cli("list --json")` gives exit code, standard output and error."""
-    from footfall.cli import main
+    from footfall.cli.app import main
 
     def run(line: str) -> tuple[int, str, str]:
         capsys.readouterr()
@@ -70,7 +72,7 @@ def cli(capsys):  # type: ignore[no-untyped-def]
 @pytest.fixture(scope="session")
 def workshop(tmp_path_factory):  # type: ignore[no-untyped-def]
     """A folder with short.toml and what the commands made of it: walk, rec, pdr and hdr .parquet."""
-    from footfall.cli import main
+    from footfall.cli.app import main
 
     folder = tmp_path_factory.mktemp("workshop")
     (folder / "short.toml").write_text(SHORT, encoding="utf-8")

@@ -18,9 +18,9 @@ import numpy as np
 
 import footfall  # noqa: F401 - registers the environment
 from footfall.models.policy import Policy, stock_policy
-from footfall.simulate.env import Difficulty
-from footfall.simulate.observation import LAYOUT
-from footfall.simulate.walkers import N_ACTION
+from footfall.simulate.learn.env import Difficulty
+from footfall.simulate.walker.observation import LAYOUT
+from footfall.simulate.walker.walkers import N_ACTION
 
 ID = "footfall/Walk-v0"
 PRICE = 10.0  # of torque, beside the 0.25 that the reward has already

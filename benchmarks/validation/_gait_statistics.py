@@ -1,0 +1,183 @@
+"""Statistics of a foot's strides, and how far its mean stride is from those of others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from benchmarks.validation._gait_strides import QUIET_S, RATE_HZ, STILL_RATE, Foot, Stride
+from footfall.conventions import GRAVITY
+
+FEWEST = 8  # strides that a standard deviation is taken of
+PUSH_S = 0.20  # before the peak of the pitch rate: the acceleration of push-off lies within
+SIGNALS = ("gyro x", "gyro y", "gyro z", "gyro norm", "accel x", "accel y", "accel z", "accel norm")
+
+
+def longest_still(rate: np.ndarray) -> slice:
+    """The longest run of a rate (rad/s) below `STILL_RATE`; empty where there is none."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], rate < STILL_RATE, [False]]))).reshape(-1, 2)
+    if len(edges) == 0:
+        return slice(0, 0)
+    start, stop = edges[np.argmax(edges[:, 1] - edges[:, 0])]
+    return slice(int(start), int(stop))
+
+
+def quietest(rate: np.ndarray, inside: slice) -> slice:
+    """The `QUIET_S` with the lowest mean rate that begin in `inside` or half their length before it."""
+    n = round(QUIET_S * RATE_HZ)
+    first, last = max(inside.start - n // 2, 0), min(inside.stop + n // 2, len(rate))
+    if last - first < n:
+        return slice(0, 0)
+    means = np.convolve(rate[first:last], np.ones(n) / n, mode="valid")
+    start = first + int(np.argmin(means))
+    return slice(start, start + n)
+
+
+def per_axis_sd(values: np.ndarray) -> float:
+    """Standard deviation of (n, 3) samples, root mean square over the axes; nan without samples."""
+    return float(np.sqrt(np.mean(np.var(values, axis=0)))) if len(values) else float("nan")
+
+
+def _mean(values: np.ndarray) -> float:
+    return float(values.mean()) if len(values) else float("nan")
+
+
+def stride_figures(foot: Foot, stride: Stride) -> dict[str, float]:
+    """Figures of one stride, from crossing to crossing (see `Stride`)."""
+    begin = round(stride.crossing - stride.duration * RATE_HZ)
+    end = round(stride.crossing)
+    gyro, accel = foot.signals.gyro[begin : stride.last + 1], foot.signals.accel[begin : stride.last + 1]
+    rate, force = np.linalg.norm(gyro, axis=1), np.linalg.norm(accel, axis=1)
+    cycle = slice(0, end - begin)
+    still = longest_still(rate[cycle])
+    quarter = (still.stop - still.start) // 4
+    middle = slice(still.start + quarter, still.stop - quarter)
+    quiet = quietest(rate[cycle], still)
+    push, swing = stride.push - begin, stride.swing - begin
+    landing = swing + int(np.argmax(gyro[swing:, 1] > 0))
+    lean = np.degrees(np.arcsin(np.clip(stride.up[:, 0], -1, 1)))
+
+    def percent(rows: float) -> float:
+        return 100 * rows / (end - begin)
+
+    return {
+        "stride_s": stride.duration,
+        "stride_m": float(np.hypot(*stride.step[:2])),
+        "still_pct": percent(still.stop - still.start),
+        "push_off_deg_s": float(np.degrees(gyro[push, 1])),
+        "swing_deg_s": float(-np.degrees(gyro[swing, 1])),
+        "swing_peak_pct": percent(stride.swing - stride.crossing),
+        "landing_pct": percent(begin + landing - stride.crossing),
+        "roll_deg_s": float(np.degrees(np.sqrt(np.mean(gyro[cycle, 0] ** 2)))),
+        "yaw_deg_s": float(np.degrees(np.sqrt(np.mean(gyro[cycle, 2] ** 2)))),
+        "toe_down_deg": float(-lean.min()),
+        "toe_up_deg": float(lean.max()),
+        "heel_strike_m_s2": float(force[swing:].max()),
+        "heel_strike_x_m_s2": float(accel[swing:, 0].max()),
+        "heel_strike_z_m_s2": float(accel[swing:, 2].max()),
+        "push_off_m_s2": float(force[max(push - round(PUSH_S * RATE_HZ), 0) : swing].max()),
+        "mid_gyro_sd_deg_s": float(np.degrees(per_axis_sd(gyro[middle]))),
+        "mid_accel_sd_m_s2": per_axis_sd(accel[middle]),
+        "mid_gyro_deg_s": float(np.degrees(_mean(rate[middle]))),
+        "quiet_gyro_deg_s": float(np.degrees(_mean(rate[quiet]))),
+        "quiet_gyro_sd_deg_s": float(np.degrees(per_axis_sd(gyro[quiet]))),
+        "quiet_accel_sd_m_s2": per_axis_sd(accel[quiet]),
+    }
+
+
+def rectified(foot: Foot) -> np.ndarray:
+    """(3, 3) heading rate per unit of g-sensitivity G_ij (deg/s per deg/s/g): gyro i, accelerometer j.
+
+    mean(C_zi f_j) - mean(C_zi) f_j,standing over whole strides: f in g, C_z the vertical in the foot's axes.
+    """
+    product, vertical, samples = np.zeros((3, 3)), np.zeros(3), 0
+    for stride in foot.strides:
+        accel = foot.signals.accel[stride.first : stride.last + 1]
+        product += np.trapezoid(stride.up[:, :, None] * accel[:, None, :], axis=0)
+        vertical += np.trapezoid(stride.up, axis=0)
+        samples += stride.last - stride.first
+    # The foot's axes are level when it stands: then the force is g along z.
+    standing = np.array([0.0, 0.0, GRAVITY])
+    return (product / samples - np.outer(vertical / samples, standing)) / GRAVITY
+
+
+def stance_yaw(strides: Sequence[Stride]) -> np.ndarray:
+    """(m,) rad, a standing foot's heading about the direction of travel through it; toes out is negative.
+
+    The direction at a footfall is that from the footfall before it to the one after it, where both strides
+    are steady.
+    """
+    off = []
+    for before, after in pairwise(strides):
+        if before.last != after.first:
+            continue
+        cos, sin = np.cos(before.turn), np.sin(before.turn)
+        x, y = before.step[:2]  # in the heading of its start: turned into that of its end
+        both = np.array([cos * x + sin * y, -sin * x + cos * y]) + after.step[:2]
+        off.append(-np.arctan2(both[1], both[0]))
+    return np.array(off)
+
+
+def _sd(values: np.ndarray) -> float:
+    return float(np.std(values, ddof=1)) if len(values) >= FEWEST else float("nan")
+
+
+def foot_figures(foot: Foot) -> dict[str, float]:
+    """Figures of a foot: medians over its steady strides, and their scatter."""
+    each = [stride_figures(foot, stride) for stride in foot.strides]
+    times, lengths = (np.array([row[name] for row in each]) for name in ("stride_s", "stride_m"))
+    matrix = rectified(foot)
+    return {
+        "strides": len(each),
+        "speed_m_s": float(lengths.sum() / times.sum()),
+        "walk_ratio_mm_min": float(1e3 * np.median(lengths / 2 / (120 / times))),
+        **{name: float(np.nanmedian([row[name] for row in each])) for name in each[0]},
+        "stride_sd_ms": 1e3 * _sd(times),
+        "stride_length_sd_cm": 1e2 * _sd(lengths),
+        "yaw_scatter_deg": float(np.degrees(_sd(stance_yaw(foot.strides)))),
+        **{f"g_{a}{b}": float(matrix[i, j]) for i, a in enumerate("xyz") for j, b in enumerate("xyz")},
+    }
+
+
+def distance(mean: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """How far a mean stride is from others', signal by signal.
+
+    Parameters
+    ----------
+    mean : (phases, signals)
+    others : (recordings, phases, signals), their mean strides, two or more
+
+    Returns
+    -------
+    far : (signals,) RMS difference from the mean of the others over the RMS of their standard deviation
+    within : (signals,) share of the stride that lies within the others' mean +- 2 standard deviations
+    """
+    centre, spread = others.mean(axis=0), others.std(axis=0, ddof=1)
+    off = mean - centre
+    far = np.sqrt(np.mean(off**2, axis=0) / np.mean(spread**2, axis=0))
+    return far, np.mean(np.abs(off) <= 2 * spread, axis=0)
+
+
+def bands(strides: np.ndarray) -> dict[str, float]:
+    """Scatter of a foot's (strides, phases, signals), RMS over the stride (deg/s, m/s2), by row."""
+    if len(strides) < FEWEST:
+        return {f"band {signal}": float("nan") for signal in SIGNALS}
+    wide = np.sqrt(np.mean(np.var(strides, axis=0, ddof=1), axis=0))
+    return {
+        f"band {signal}": float(np.degrees(sd) if signal.startswith("gyro") else sd)
+        for signal, sd in zip(SIGNALS, wide, strict=True)
+    }
+
+
+def distances(means: Mapping[str, np.ndarray], real: Sequence[str]) -> dict[str, dict[str, float]]:
+    """`distance` of every foot from the real ones, of a real one from the others: by foot and row."""
+    found = {}
+    for name, mean in means.items():
+        far, within = distance(mean, np.array([means[other] for other in real if other != name]))
+        found[name] = {f"distance {signal}": float(value) for signal, value in zip(SIGNALS, far, strict=True)}
+        found[name] |= {
+            f"within {signal}": 100 * float(value) for signal, value in zip(SIGNALS, within, strict=True)
+        }
+    return found

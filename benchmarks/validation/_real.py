@@ -1,0 +1,87 @@
+"""Real recordings that lie beside the checkout, read by Footfall's own readers, and their truths."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from footfall.formats import Findings, read
+from footfall.recording import Recording
+
+BESIDE = Path(__file__).resolve().parents[3] / "shared" / "data"
+
+
+@dataclass(frozen=True)
+class Real:
+    """One recording.
+
+    Attributes
+    ----------
+    name : of the recording
+    group : of those made alike
+    path : its file
+    prints : CSV with the columns timestamp, gcpX, gcpY of measured footprints; None where there are none
+    """
+
+    name: str
+    group: str
+    path: Path
+    prints: Path | None = None
+
+    @cached_property
+    def _read(self) -> tuple[Recording, Findings]:
+        return read(self.path)
+
+    @property
+    def recording(self) -> Recording:
+        """In SI, mended."""
+        return self._read[0]
+
+    @property
+    def findings(self) -> Findings:
+        """What was wrong with it."""
+        return self._read[1]
+
+    @cached_property
+    def footprints(self) -> np.ndarray | None:
+        """(n, 3) t (s), x, y (m): one a footfall, the first that of the start; y to the left."""
+        if self.prints is None:
+            return None
+        with open(self.prints, newline="", encoding="utf-8") as file:
+            rows = [
+                [float(row[key]) for key in ("timestamp", "gcpX", "gcpY")] for row in csv.DictReader(file)
+            ]
+        return np.array(rows) * [1.0, 1.0, -1.0]  # theirs is a frame with z down
+
+
+def find(folder: Path) -> list[Real]:
+    """The recordings in a folder laid out like the one beside the checkout."""
+    found = [
+        Real(f"openshoe {path.stem[-2:]}", "openshoe", path)
+        for path in sorted((folder / "openshoe").glob("data_inert_*.txt"))
+    ]
+    for path in sorted((folder / "gdin").glob("SensorConnectData_[0-9][0-9].csv")):
+        prints = path.with_name(f"{path.stem}_strideIndex_timestamp_gcpX_gcpY.csv")
+        found.append(Real(f"gdin {path.stem[-2:]}", "gdin", path, prints if prints.is_file() else None))
+    found += [
+        Real(f"xio {path.stem.removesuffix('_walk')}", "xio", path)
+        for path in sorted((folder / "xio").glob("*_walk.csv"))
+    ]
+    return found
+
+
+def rigid_fit(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
+    """(n, 2) points turned and shifted so that they lie best on (n, 2) others: no scaling, no mirror."""
+    a, b = ours @ [1, 1j], theirs @ [1, 1j]
+    turn = np.vdot(a - a.mean(), b - b.mean())
+    fitted = (a - a.mean()) * turn / abs(turn) + b.mean()
+    return np.column_stack([fitted.real, fitted.imag])
+
+
+def rigid_rmse(ours: np.ndarray, theirs: np.ndarray) -> float:
+    """RMS distance (m) of (n, 2) points after the best rotation and shift."""
+    return float(np.sqrt(np.mean(np.sum((rigid_fit(ours, theirs) - theirs) ** 2, axis=1))))

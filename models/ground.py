@@ -1,0 +1,42 @@
+"""The ground under a walker: its height and gradient, and the plane that each foot treads on.
+
+A heightfield under the feet would cost MuJoCo half as much again as level ground, and triangles have edges.
+A foot is short beside the bends of any street: where it treads, the ground is its tangent plane.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from footfall.models import body
+from footfall.models._ground_kernels import bilinear, lay
+from footfall.models.body import Ground
+
+Look = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+N_PLANES = 14  # numbers that pose the planes of two feet: positions (2, 3), then quaternions (2, 4), w first
+
+
+def ground_lookup(ground: Ground) -> Look:
+    """(x, y) (n,) each -> height (n,) m and gradient (n, 2), bilinear in the grid."""
+    heights = np.ascontiguousarray(ground.heights, dtype=float)
+    x0, y0, cell = float(ground.x0), float(ground.y0), float(ground.cell)
+
+    def look(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        height, gradient = bilinear(heights, x0, y0, cell, np.ascontiguousarray(x), np.ascontiguousarray(y))
+        return height, gradient
+
+    return look
+
+
+def tread(planes: np.ndarray, sensor: np.ndarray, look: Look) -> None:
+    """Lay the ground's tangent plane under every foot that carries no load; under the others it stays.
+
+    Parameters
+    ----------
+    planes : (n, N_PLANES) changed in place
+    sensor : (n, n_sensor) of `models.body`
+    """
+    feet = sensor[:, body.SENSOR_FOOT_POSITION].reshape(-1, 3)
+    lay(planes, sensor, *look(feet[:, 0], feet[:, 1]))

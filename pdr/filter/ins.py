@@ -1,0 +1,334 @@
+"""Error-state filter of a foot-mounted IMU: strapdown, zero-velocity updates, and what else is observed.
+
+The framework of Foxlin (2005) as Deng et al. (2018) write it down (section 2, "IEZ"): the filter estimates
+the errors of the strapdown, delta = truth - estimate, and puts them right at once.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from footfall.conventions import GRAVITY, heading_of
+from footfall.errors import InputError
+from footfall.pdr.filter import _kernels as kernels
+from footfall.pdr.strapdown import ORIGIN
+
+POSITION, VELOCITY, ATTITUDE = slice(0, 3), slice(3, 6), slice(6, 9)
+ACCEL_BIAS, GYRO_BIAS, G_SENSITIVITY = slice(9, 12), slice(12, 15), slice(15, 24)
+HEADING = 8  # the attitude error about the vertical
+
+MOVING, ZERO_VELOCITY, ZERO_RATE = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class FilterSettings:
+    """What the filter believes and which errors it estimates.
+
+    The default is what walking feet allow: one update a stance, which leaves the heading to the gyro.
+    `paper()` is the filter of the paper.
+
+    Attributes
+    ----------
+    update : "stance": zero velocity once a stance, at its quietest instant (and every `StanceParams.reset_s`
+        while standing still); "sample": at every sample that the detector calls still, as in the paper
+    sigma_velocity : m/s, of the zero velocity. A sole rolls: the foot moves alike at every stance when it is
+        called still, and what is granted less than this passes for a gyro bias (docs/iez.md)
+    velocity_turns : True lets zero velocity correct the heading and the gyro bias about the vertical, as in
+        the paper. A bias b turns a stride of length L sideways by b L, so that every velocity which a foot
+        has to the side when it is called still passes for a bias. False leaves them what they are, and the
+        gain is that of a filter that knows them: else their growing variance would be put into the tilt
+    accel_noise, gyro_noise : m/s2/sqrt(Hz), rad/s/sqrt(Hz), of the samples; far above a data sheet's, because
+        the shocks of walking meet scale factors and finite bandwidth
+    accel_bias_walk, gyro_bias_walk : m/s2/sqrt(s), rad/s/sqrt(s), growth of the biases
+    tilt_sd, heading_sd : rad, at the start; what the accelerometers' biases add to the tilt is added
+    accel_bias_sd, gyro_bias_sd : m/s2, rad/s, at the start
+    estimate_accel_bias, estimate_gyro_bias : False freezes the bias at what the start said
+    zaru : zero angular rate at the updates of a still period; never in a stride's stance, which turns
+    sigma_rate : rad/s, of the zero rate
+    g_sensitivity : estimate the gyro's g-sensitivity too, nine more states (Bancroft and Lachapelle 2012)
+    g_sensitivity_sd : rad/s per m/s2, of each of them at the start
+    gap_s : s, a longer interval between samples is a gap: its sample is held over it, as if force and rate
+        deviated from it by `gap_accel` (m/s2) and `gap_gyro` (rad/s) all the time
+    """
+
+    update: Literal["stance", "sample"] = "stance"
+    sigma_velocity: float = 0.05
+    velocity_turns: bool = False
+    accel_noise: float = 0.03
+    gyro_noise: float = 0.002
+    accel_bias_walk: float = 1e-4
+    gyro_bias_walk: float = 1e-5
+    tilt_sd: float = math.radians(0.1)
+    heading_sd: float = 0.0
+    accel_bias_sd: float = 0.05
+    gyro_bias_sd: float = math.radians(0.1)
+    estimate_accel_bias: bool = True
+    estimate_gyro_bias: bool = True
+    zaru: bool = False
+    sigma_rate: float = math.radians(0.5)
+    g_sensitivity: bool = False
+    g_sensitivity_sd: float = math.radians(0.1) / GRAVITY
+    gap_s: float = 0.05
+    gap_accel: float = 10.0
+    gap_gyro: float = 3.0
+
+    def __post_init__(self) -> None:
+        if self.update not in ("stance", "sample"):
+            raise InputError(f'filter: update = {self.update!r}, expected "stance" or "sample"')
+        for name, value in vars(self).items():
+            if isinstance(value, float) and not 0 <= value < math.inf:
+                raise InputError(f"filter: {name} = {value}, expected a finite number, at least 0")
+        for name in ("sigma_velocity", "sigma_rate"):
+            if getattr(self, name) == 0:
+                raise InputError(f"filter: {name} = 0, expected more: nothing is known exactly")
+        for name in ("zaru", "g_sensitivity"):
+            if getattr(self, name) and not self.estimate_gyro_bias:
+                raise InputError(f"filter: {name} needs estimate_gyro_bias, which is off")
+
+    @classmethod
+    def paper(cls) -> FilterSettings:
+        """The paper's filter: zero velocity at every still sample, biases free (Deng et al., section 2.2).
+
+        The paper states no noise. These are the constants in use with it (OpenShoe, at 250 Hz): 0.5 m/s2 and
+        0.5 deg/s per sample, 0.01 m/s, and at the start 0.1 deg, 0.3 m/s2 and 0.3 deg/s.
+        """
+        per_sample = 1 / math.sqrt(250.0)
+        return cls(
+            update="sample",
+            sigma_velocity=0.01,
+            velocity_turns=True,
+            accel_noise=0.5 * per_sample,
+            gyro_noise=math.radians(0.5) * per_sample,
+            accel_bias_sd=0.3,
+            gyro_bias_sd=math.radians(0.3),
+        )
+
+    @property
+    def states(self) -> int:
+        """Length of the error state."""
+        return 24 if self.g_sensitivity else 15
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """What is known before the first sample.
+
+    Attributes
+    ----------
+    t : s, the stamp that the state belongs to
+    quaternion : (4,) body to world, scalar first
+    gyro_bias : (3,) rad/s, measured at rest
+    force : (3,) m/s2, measured at rest
+    position : m
+    """
+
+    t: float
+    quaternion: np.ndarray
+    gyro_bias: np.ndarray
+    force: np.ndarray
+    position: tuple[float, float, float] = ORIGIN
+
+
+class InertialFilter:
+    """Strapdown and error-state Kalman filter that take samples as they come.
+
+    Splitting the samples between calls changes nothing. Covariances are kept of the present only.
+
+    Parameters
+    ----------
+    settings : what it believes
+    start : at rest; everything is counted from there
+    """
+
+    def __init__(self, settings: FilterSettings, start: Alignment) -> None:
+        self.settings = settings
+        self.t = float(start.t)
+        self._x = np.concatenate(
+            [start.quaternion, ORIGIN, start.position, ORIGIN, start.gyro_bias, np.zeros(9)]
+        )
+        self._p = initial_covariance(settings, start)
+        self._noise = np.square(
+            [
+                settings.accel_noise,
+                settings.gyro_noise,
+                settings.accel_bias_walk if settings.estimate_accel_bias else 0.0,
+                settings.gyro_bias_walk if settings.estimate_gyro_bias else 0.0,
+            ]
+        )
+        self._sample = np.zeros(3), np.asarray(start.force, dtype=float)
+        self._gap = np.array([settings.gap_s, settings.gap_accel, settings.gap_gyro])
+        self._variances = (settings.sigma_velocity**2, settings.sigma_rate**2 if settings.zaru else 0.0)
+
+    def advance(
+        self,
+        t: np.ndarray,
+        gyro: np.ndarray,
+        accel: np.ndarray,
+        update: np.ndarray,
+        transition: np.ndarray | None = None,
+    ) -> None:
+        """Take the samples that follow.
+
+        Parameters
+        ----------
+        t : (n,) s, increasing, after `self.t`; a sample is the mean over the interval that its stamp ends
+        gyro, accel : (n, 3) rad/s, m/s2
+        update : (n,) int, what is known at the end of each sample: `MOVING` nothing, `ZERO_VELOCITY`,
+            `ZERO_RATE` both (with `settings.zaru`; else the velocity alone)
+        transition : (states, states) is multiplied from the left by the samples' transition; for smoothers
+        """
+        if len(t) == 0:
+            return
+        kernels.run(
+            self._x,
+            self._p,
+            np.empty((0, 0)) if transition is None else transition,
+            self.t,
+            np.ascontiguousarray(t, dtype=float),
+            np.ascontiguousarray(gyro, dtype=float),
+            np.ascontiguousarray(accel, dtype=float),
+            np.ascontiguousarray(update, dtype=np.int64),
+            self._noise,
+            self._gap,
+            *self._variances,
+            self.settings.velocity_turns,
+        )
+        self.t = float(t[-1])
+        self._sample = np.array(gyro[-1], dtype=float), np.array(accel[-1], dtype=float)
+
+    def rest(self, update: int = ZERO_VELOCITY) -> np.ndarray:
+        """Take in that the foot is at rest now, at the last sample; as `advance` does for its `update`.
+
+        Returns
+        -------
+        (states,) the error that was put right.
+        """
+        velocity, rate = self._variances
+        rate = rate if update == ZERO_RATE else 0.0
+        return np.asarray(
+            kernels.rest(self._x, self._p, *self._sample, velocity, rate, self.settings.velocity_turns)
+        )
+
+    def correct_heading(self, innovation: float, sd: float) -> np.ndarray:
+        """Take in that the heading is wrong by `innovation` (rad, truth - estimate), known to `sd` (rad).
+
+        Returns
+        -------
+        (states,) the error that was put right.
+
+        Notes
+        -----
+        The paper's row [0 0 1] (Eq. 28) holds at zero pitch only; for a body x axis e it is
+        [-e_z e_x, -e_z e_y, e_x^2 + e_y^2] / (e_x^2 + e_y^2) on the attitude error.
+        """
+        if not (math.isfinite(innovation) and 0 < sd < math.inf):
+            raise InputError(
+                f"filter: heading innovation {innovation} rad, SD {sd} rad; expected finite numbers, SD > 0"
+            )
+        return np.asarray(kernels.heading(self._x, self._p, float(innovation), float(sd) ** 2))
+
+    def snapshot(self) -> InertialFilter:
+        """A copy that goes its own way."""
+        copy = object.__new__(InertialFilter)
+        copy.__dict__ = self.__dict__ | {"_x": self._x.copy(), "_p": self._p.copy()}
+        return copy
+
+    def moved(self, error: np.ndarray, covariance: np.ndarray) -> InertialFilter:
+        """A copy with `error` (states,) put right and another covariance (states, states)."""
+        copy = self.snapshot()
+        kernels.inject(copy._x, error)
+        copy._p = 0.5 * (covariance + covariance.T)
+        return copy
+
+    @property
+    def quaternion(self) -> np.ndarray:
+        """(4,) body to world, scalar first."""
+        return self._x[0:4].copy()
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """(3,) m/s, world."""
+        return self._x[4:7].copy()
+
+    @property
+    def position(self) -> np.ndarray:
+        """(3,) m, world."""
+        return self._x[7:10].copy()
+
+    @property
+    def heading(self) -> float:
+        """Of the IMU's x axis, rad from -pi to pi; means something at rest only."""
+        return float(heading_of(self._x[0:4]))
+
+    @property
+    def heading_sd(self) -> float:
+        """Standard deviation of the heading (rad)."""
+        row = np.array(kernels.heading_row(self._x))
+        return float(np.sqrt(row @ self._p[ATTITUDE, ATTITUDE] @ row))
+
+    @property
+    def accel_bias(self) -> np.ndarray:
+        """(3,) m/s2, body."""
+        return self._x[10:13].copy()
+
+    @property
+    def gyro_bias(self) -> np.ndarray:
+        """(3,) rad/s, body."""
+        return self._x[13:16].copy()
+
+    @property
+    def g_sensitivity(self) -> np.ndarray:
+        """(3, 3) rad/s per m/s2; rows gyro, columns force."""
+        return self._x[16:25].reshape(3, 3).copy()
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """(states, states) of delta = truth - estimate, in the order of this module's slices."""
+        return self._p.copy()
+
+
+def initial_covariance(settings: FilterSettings, start: Alignment) -> np.ndarray:
+    """Covariance (states, states) of an alignment at rest.
+
+    Position and velocity are known. An accelerometer bias b tilts the levelled attitude by (-b_y, b_x, 0) / g
+    in the navigation frame, and the gyro bias was measured together with the g-sensitivity's share of it:
+    both pairs start correlated, or the first strides would be spent on finding out.
+    """
+    p = np.zeros((settings.states, settings.states))
+    p[6, 6] = p[7, 7] = settings.tilt_sd**2
+    p[HEADING, HEADING] = settings.heading_sd**2
+    if settings.estimate_accel_bias:
+        attitude = np.array(kernels.matrix(tuple(start.quaternion))).reshape(3, 3)
+        tilt = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]) @ attitude / GRAVITY
+        variance = settings.accel_bias_sd**2
+        p[ATTITUDE, ATTITUDE] += variance * tilt @ tilt.T
+        p[ATTITUDE, ACCEL_BIAS] = variance * tilt
+        p[ACCEL_BIAS, ATTITUDE] = variance * tilt.T
+        p[ACCEL_BIAS, ACCEL_BIAS] = variance * np.eye(3)
+    if settings.estimate_gyro_bias:
+        p[GYRO_BIAS, GYRO_BIAS] = settings.gyro_bias_sd**2 * np.eye(3)
+    if settings.g_sensitivity:
+        variance = settings.g_sensitivity_sd**2
+        share = np.kron(np.eye(3), start.force)  # rate = share @ g-sensitivity
+        p[GYRO_BIAS, GYRO_BIAS] += variance * share @ share.T
+        p[GYRO_BIAS, G_SENSITIVITY] = -variance * share
+        p[G_SENSITIVITY, GYRO_BIAS] = -variance * share.T
+        p[G_SENSITIVITY, G_SENSITIVITY] = variance * np.eye(9)
+    return p
+
+
+def frozen(settings: FilterSettings) -> FilterSettings:
+    """The same with both biases left as the start said: nine states."""
+    return replace(
+        settings, estimate_accel_bias=False, estimate_gyro_bias=False, zaru=False, g_sensitivity=False
+    )
+
+
+def about_vertical(quaternion: np.ndarray, turn: float) -> np.ndarray:
+    """Attitude (4,) turned by `turn` (rad) about the world's vertical."""
+    about = (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))
+    return np.array(kernels.multiply(about, tuple(quaternion)))

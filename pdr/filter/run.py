@@ -1,0 +1,228 @@
+"""From a recording to footfalls by the error-state filter, stance by stance, open to heading corrections."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from footfall.conventions import wrap
+from footfall.errors import InputError
+from footfall.pdr.filter.ins import (
+    MOVING,
+    ZERO_RATE,
+    ZERO_VELOCITY,
+    Alignment,
+    FilterSettings,
+    InertialFilter,
+    about_vertical,
+)
+from footfall.pdr.filter.smooth import Node, smoothed
+from footfall.pdr.footfalls import Footfalls
+from footfall.pdr.reckoning import Detected, PdrParams, Rest, StartPose, detect, level_attitude
+from footfall.pdr.stance import runs
+from footfall.recording import Recording
+
+
+@dataclass(frozen=True)
+class Step:
+    """A footfall as the filter sees it, after its zero-velocity update.
+
+    Attributes
+    ----------
+    index : of the footfall; 0 is the still start, the corrector is asked from 1 on
+    t : s
+    heading : rad, unwrapped, of the IMU's x axis
+    stride_time : s since the footfall before
+    still_time : s that the foot is at rest around this footfall
+    position : (3,) m
+    stride : (3,) m, displacement from the footfall before, as that was after its correction
+    """
+
+    index: int
+    t: float
+    heading: float
+    stride_time: float
+    still_time: float
+    position: np.ndarray
+    stride: np.ndarray
+
+
+class Corrector(Protocol):
+    """A heading method: asked once a footfall, in order.
+
+    Returns the innovation (rad, truth - estimate: what to add to the heading) and its standard deviation
+    (rad), or None where it knows nothing. A corrector that has a method `applied(turned)` is told after each
+    correction by how much (rad) it turned the filter's heading, to turn by the same what it remembers.
+    """
+
+    def __call__(self, step: Step) -> tuple[float, float] | None: ...
+
+
+@dataclass(frozen=True)
+class Filtered:
+    """What the filter makes of a recording.
+
+    Attributes
+    ----------
+    footfalls : with the filter's positions and headings, corrections included
+    accel_bias, gyro_bias : (n, 3) m/s2, rad/s, body, at each footfall
+    heading_sd : (n,) rad
+    innovation : (n,) rad, what the corrector said; NaN where it said nothing
+    """
+
+    footfalls: Footfalls
+    accel_bias: np.ndarray
+    gyro_bias: np.ndarray
+    heading_sd: np.ndarray
+    innovation: np.ndarray
+
+
+def align(recording: Recording, rest: Rest, start: StartPose) -> Alignment:
+    """Level by the mean force at rest, heading as given, gyro bias as measured."""
+    return Alignment(
+        t=float(recording.t[rest.last]),
+        quaternion=about_vertical(level_attitude(rest.force), start.heading),
+        gyro_bias=rest.gyro_bias,
+        force=rest.force,
+        position=start.position,
+    )
+
+
+def run_filter(
+    recording: Recording,
+    settings: FilterSettings | None = None,
+    pdr: PdrParams | None = None,
+    start: StartPose | None = None,
+    corrector: Corrector | None = None,
+    *,
+    found: Detected | None = None,
+    smooth: bool = False,
+) -> Filtered:
+    """Filter a recording that begins at rest.
+
+    Parameters
+    ----------
+    pdr : still start, stances and detector; `tilt_gain` means nothing here
+    start : where the IMU rests before the walk, `found.rest.last`; what it does from there on is filtered
+    corrector : a heading method, asked at every footfall after footfall 0
+    found : what `detect` found, where it is known already
+    smooth : run back over the record too (Rauch, Tung, Striebel); needs one update a stance
+
+    Raises
+    ------
+    InputError
+        No rest at the start, no stride after it, a hole in the samples that is too long, or smoothing of
+        per-sample updates.
+    """
+    settings, pdr, start = settings or FilterSettings(), pdr or PdrParams(), start or StartPose()
+    by_stance = settings.update == "stance"
+    if smooth and not by_stance:
+        raise InputError('filter: smoothing needs update = "stance", one update a stance')
+    found = found or detect(recording, pdr)
+    stances, resets = found.stances, found.stances.resets
+    update = updates(recording.t, found, None if by_stance else 2 * pdr.stance.reset_s)
+    still_time = _still_time(recording.t, found.score, resets[stances.footfalls])
+
+    now = InertialFilter(settings, align(recording, found.rest, start))
+    kept: list[InertialFilter] = []
+    nodes = [Node.first(now)] if smooth else []  # one a reset; the first is the rest
+    heading, innovation = start.heading, np.full(len(stances.footfalls), np.nan)
+    applied = getattr(corrector, "applied", lambda turned: None)
+    for i, footfall in enumerate(stances.footfalls):
+        for reset in range(stances.footfalls[i - 1] + 1 if i else 1, footfall + 1):
+            rows = slice(resets[reset - 1] + 1, resets[reset] + 1)
+            if smooth:
+                nodes.append(_node(now, recording, rows, update))
+            else:
+                now.advance(recording.t[rows], recording.gyro[rows], recording.accel[rows], update[rows])
+        heading += float(wrap(now.heading - heading))
+        if i > 0 and corrector is not None:
+            before = kept[-1]
+            stride = now.position - before.position
+            said = corrector(
+                Step(i, now.t, heading, now.t - before.t, float(still_time[i]), now.position, stride)
+            )
+            if said is not None:
+                innovation[i] = said[0]
+                put_right = now.correct_heading(*said)
+                turned = float(wrap(now.heading - heading))
+                heading += turned
+                applied(turned)
+                if smooth:
+                    nodes[-1] = nodes[-1].with_also(put_right, now)
+        kept.append(now.snapshot())
+    if smooth:
+        states = smoothed(nodes)
+        kept = [states[k] for k in stances.footfalls]
+    return _filtered(kept, start, innovation)
+
+
+def run_filters(
+    recordings: Sequence[Recording],
+    settings: FilterSettings | None = None,
+    pdr: PdrParams | None = None,
+    starts: Sequence[StartPose] | None = None,
+    *,
+    threads: int | None = None,
+) -> list[Filtered]:
+    """`run_filter` of many recordings at once, in order: the compiled part runs beside Python's lock.
+
+    Parameters
+    ----------
+    starts : one for each recording
+    threads : at once (default: what Python finds fit)
+    """
+    starts = [StartPose()] * len(recordings) if starts is None else starts
+    if len(starts) != len(recordings):
+        raise InputError(f"filter: {len(recordings)} recordings, but {len(starts)} starts")
+    with ThreadPoolExecutor(threads) as pool:
+        return list(pool.map(lambda one, at: run_filter(one, settings, pdr, at), recordings, starts))
+
+
+def _node(now: InertialFilter, recording: Recording, rows: slice, update: np.ndarray) -> Node:
+    """Advance to the end of `rows`, where an update is, and keep what smoothing needs."""
+    transition = np.eye(now.settings.states)
+    moving = np.full(rows.stop - rows.start, MOVING)
+    now.advance(recording.t[rows], recording.gyro[rows], recording.accel[rows], moving, transition)
+    before = now.covariance
+    put_right = now.rest(int(update[rows.stop - 1]))
+    return Node(now.snapshot(), before, transition, put_right)
+
+
+def updates(t: np.ndarray, found: Detected, still_period_s: float | None) -> np.ndarray:
+    """(n,) update of each sample: at the resets, or at all still samples, rate too in a `still_period_s`."""
+    update = np.full(len(t), MOVING)
+    if still_period_s is None:
+        count = np.diff(found.stances.footfalls, prepend=-1)
+        one_a_stance = np.repeat(count == 1, count)
+        resets = found.stances.resets[: len(one_a_stance)]
+        update[resets] = np.where(one_a_stance, ZERO_VELOCITY, ZERO_RATE)
+    else:
+        for first, last in runs(found.score < 1.0):
+            long = t[last] - t[first] > still_period_s
+            update[first : last + 1] = ZERO_RATE if long else ZERO_VELOCITY
+    return update
+
+
+def _still_time(t: np.ndarray, score: np.ndarray, footfalls: np.ndarray) -> np.ndarray:
+    """(k,) s that the foot is at rest around each of the samples `footfalls`; by their `score` (n,)."""
+    found = runs(score < 1.0)
+    first, last = found[np.maximum(np.searchsorted(found[:, 0], footfalls, side="right") - 1, 0)].T
+    return t[last] - t[first]
+
+
+def _filtered(states: Sequence[InertialFilter], start: StartPose, innovation: np.ndarray) -> Filtered:
+    heading = np.unwrap([start.heading, *(state.heading for state in states)])[1:]
+    return Filtered(
+        footfalls=Footfalls.at(
+            np.array([state.t for state in states]), np.array([state.position for state in states]), heading
+        ),
+        accel_bias=np.array([state.accel_bias for state in states]),
+        gyro_bias=np.array([state.gyro_bias for state in states]),
+        heading_sd=np.array([state.heading_sd for state in states]),
+        innovation=innovation,
+    )

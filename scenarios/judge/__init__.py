@@ -1,0 +1,1 @@
+"""Tracks against the truth, and what the papers say."""

@@ -1,0 +1,303 @@
+"""What a run says: tables for people, one JSON document for programs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from rich.box import SIMPLE_HEAD
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from footfall.scenarios.judge.papers import HDR_TABLE_2, HDR_TABLE_2_MEAN, IHDE_TABLE_2, range_text
+from footfall.scenarios.judge.score import Align, Score, improvement, mean_score
+from footfall.scenarios.path import Path
+from footfall.scenarios.run import Result
+from footfall.simulate.walking import versions
+
+_ERRORS = ("heading_error_final_deg", "heading_error_mean_deg")
+
+
+def spread(values: Sequence[float]) -> dict[str, float]:
+    """Mean, median and 90th percentile."""
+    array = np.asarray(values, dtype=float)
+    return {
+        "mean": float(array.mean()),
+        "median": float(np.median(array)),
+        "p90": float(np.percentile(array, 90)),
+    }
+
+
+def extent(values: Sequence[float]) -> dict[str, float]:
+    """Median, smallest and largest."""
+    return {"median": float(np.median(values)), "smallest": float(min(values)), "largest": float(max(values))}
+
+
+def scores_by_method(rows: Sequence[Mapping[str, Score]]) -> dict[str, list[Score]]:
+    """Method -> its score in each row."""
+    return {name: [row[name] for row in rows] for name in rows[0]} if rows else {}
+
+
+def as_json(scenario: str, results: Sequence[Result]) -> dict[str, Any]:
+    """The document of `run --json` (docs/scores.md)."""
+    document: dict[str, Any] = {
+        "scenario": scenario,
+        "distance_m": float(np.mean([_distance(result) for result in results])),
+        "duration_s": float(np.mean([_duration(result) for result in results])),
+        "versions": versions(),
+        "walks": [
+            {
+                "seed": result.task.walk_seed,
+                "imu": result.task.imu,
+                "unit": result.task.unit_seed,
+                "noise": result.task.noise_seed,
+                "subject": result.walk.meta["subject"],
+                "footfalls": len(next(iter(result.tracks.values()))),
+                "methods": {name: score.as_dict() for name, score in result.scores.items()},
+                **_noises_document(result.noises),
+            }
+            for result in results
+        ],
+        "mean": {
+            name: mean_score(scores).as_dict()
+            for name, scores in scores_by_method([result.scores for result in results]).items()
+        },
+    }
+    document |= _noises_document(_mean_by_noise(results))
+    others = scores_by_method([row for result in results for row in result.others])
+    if others:
+        document["other_units"] = {
+            "count": len(next(iter(others.values()))),
+            "methods": {
+                name: {key: spread([getattr(score, key) for score in scores]) for key in _ERRORS}
+                for name, scores in others.items()
+            },
+        }
+    return document
+
+
+def _mean_by_noise(results: Sequence[Result]) -> list[dict[str, Score]]:
+    """For each further noise of the walks' own units: method -> mean over the walks."""
+    rounds = zip(*(result.noises for result in results), strict=True)
+    return [
+        {name: mean_score(scores) for name, scores in scores_by_method(round_).items()} for round_ in rounds
+    ]
+
+
+def _extents(rows: Sequence[Mapping[str, Score]]) -> dict[str, dict[str, dict[str, float]]]:
+    """Method -> heading error -> its extent over `rows`."""
+    return {
+        name: {key: extent([getattr(score, key) for score in scores]) for key in _ERRORS}
+        for name, scores in scores_by_method(rows).items()
+    }
+
+
+def _noises_document(rows: Sequence[Mapping[str, Score]]) -> dict[str, Any]:
+    return {"other_noises": {"count": len(rows), "methods": _extents(rows)}} if rows else {}
+
+
+def _distance(result: Result) -> float:
+    """Horizontal distance between the true footfalls, summed (m)."""
+    return float(np.hypot(*np.diff(result.walk.footfalls.position[:, :2], axis=0).T).sum())
+
+
+def _duration(result: Result) -> float:
+    """Seconds walked, without the motionless start."""
+    return float(result.walk.footfalls.t[-1] - result.walk.footfalls.t[0])
+
+
+def run_report(name: str, results: Sequence[Result]) -> list[RenderableType]:
+    """What a run of the scenario `name` prints for people."""
+    first, distance = results[0].task, np.mean([_distance(result) for result in results])
+    count = "1 walk" if len(results) == 1 else f"{len(results)} walks"
+    parts: list[RenderableType] = [
+        Text.assemble((name, "bold"), f": {count} of {distance:.0f} m, IMU {first.imu}"),
+        Text(path_line(first.scenario.path) + "\n", style="dim"),
+        heading_table(results),
+    ]
+    if name == "closed-loop":
+        parts.append(paper_table())
+        if first.scenario.units and first.unit_seed in first.scenario.units:
+            parts.append(Text(_CHOSEN_UNITS, style="dim"))
+    if name in IHDE_TABLE_2:
+        parts.append(ihde_table(name, results))
+    further = [table for table in (noises_table(results), others_table(results)) if table]
+    return [*parts, *further, position_table(results)]
+
+
+def path_line(path: Path) -> str:
+    """Length of a path and how well it closes, or how far and how high from its start it ends."""
+    gap, heading, climb = path.closure.gap_m, path.closure.heading_deg, path.closure.climb_m
+    length = f"Path of {path.route.length:.2f} m"
+    if path.closed:
+        millimetres = f"{gap * 1000:.2g} mm on the ground and {abs(climb) * 1000:.2g} mm of height"
+        return f"{length}, closed within {abs(heading):.1g} deg, {millimetres}"
+    return f"{length}, open: it ends {gap:.1f} m from its start, {climb:+.2f} m higher"
+
+
+_CHOSEN_UNITS = (
+    "The walks' own units were drawn from the sheet and kept because their uncorrected errors lie in the "
+    "range of the paper's Table 2; the other units below were not chosen."
+)
+
+
+def new_table(*columns: str, left: int = 1) -> Table:
+    """A table that stays readable on a terminal of 80 columns: its first `left` columns are text."""
+    table = Table(box=SIMPLE_HEAD, show_edge=False, show_header=any(columns))
+    for i, column in enumerate(columns):
+        table.add_column(column, justify="left" if i < left else "right", overflow="fold")
+    return table
+
+
+def titled(title: str, table: Table) -> Group:
+    """The table under its title, which may be the wider of the two, and a blank line."""
+    return Group(Text(title, style="bold"), table, Text())
+
+
+def heading_table(results: Sequence[Result]) -> Group:
+    """The HDR paper's Table 2 for these walks: final and average heading error, and improvement."""
+    rows = [result.scores for result in results]
+    means = {name: mean_score(scores) for name, scores in scores_by_method(rows).items()}
+    labels = ["pdr\n(uncorrected)" if name == "pdr" else name for name in means]
+    table = new_table("walk", "unit", *labels)
+    walks = [(str(result.task.number + 1), str(result.task.unit_seed)) for result in results]
+    for (walk, unit), row in zip([*walks, ("mean", "")], [*rows, means], strict=True):
+        cells = (_pair(score) + _gain(row, name) for name, score in row.items())
+        table.add_row(walk, unit, *cells, style="bold" if walk == "mean" else None)
+    compared = "pdr" in means and len(means) > 1
+    gain = "; x: times smaller than uncorrected" if compared else ""
+    return titled(f"Heading error, final / average (deg){gain}", table)
+
+
+def paper_table() -> Group:
+    """Table 2 of Borenstein et al. (2008), for comparison."""
+    table = new_table("walk", "pdr\n(uncorrected)", "hdr")
+    for row in (*HDR_TABLE_2, HDR_TABLE_2_MEAN):
+        mean = row is HDR_TABLE_2_MEAN
+        table.add_row(
+            "mean" if mean else row.name.removeprefix("Walk "),
+            f"{row.uncorrected.final:g} / {row.uncorrected.average:g}",
+            f"{row.hdr.final:g} / {row.hdr.average:g}\n"
+            f"{row.improvement.final:g}x / {row.improvement.average:g}x",
+            style="bold" if mean else None,
+        )
+    return titled("The paper's own walks: Borenstein et al. (2008), Table 2", table)
+
+
+def ihde_table(name: str, results: Sequence[Result]) -> Group:
+    """The row of Deng et al. (2018), Table 2, for one of their tests: ours with its spread, and theirs.
+
+    A method on the paper's own filter (`hde-paper`) stands beside the paper's row of its name (HDE).
+    """
+    table = new_table("", "mean", "median", "10 to 90 %\nof the walks", "smallest to\nlargest", "the paper's")
+    for method, scores in scores_by_method([result.scores for result in results]).items():
+        errors = np.array([score.return_error_pct for score in scores])
+        low, high = np.percentile(errors, [10, 90])
+        paper = IHDE_TABLE_2[name].get(method.removesuffix("-paper"))
+        table.add_row(
+            method,
+            f"{errors.mean():.2f}",
+            f"{np.median(errors):.2f}",
+            f"{low:.2f} to {high:.2f}",
+            f"{errors.min():.2f} to {errors.max():.2f}",
+            range_text(paper) if paper else "",
+        )
+    title = f"Return error P_err (% of the distance), {len(results)} walks; Deng et al. (2018), Table 2"
+    return titled(title, table)
+
+
+def noises_table(results: Sequence[Result]) -> Group | None:
+    """What other noises make of the same walks and units, and of their mean; None when there are none."""
+    means = _mean_by_noise(results)
+    if not means:
+        return None
+    table = new_table(
+        "walk", "", "final\nmedian", "smallest\nto largest", "average\nmedian", "smallest\nto largest", left=2
+    )
+    walks = [(str(result.task.number + 1), result.noises) for result in results]
+    for walk, rows in [*walks, ("mean", means)]:
+        for name, errors in _extents(rows).items():
+            cells = []
+            for found in errors.values():
+                cells += [f"{found['median']:.1f}", f"{found['smallest']:.1f} to {found['largest']:.1f}"]
+            table.add_row(walk, name, *cells, style="bold" if walk == "mean" else None)
+    return titled(f"The same walks and units heard through {len(means)} other noises each (deg)", table)
+
+
+def others_table(results: Sequence[Result]) -> Group | None:
+    """Spread over the other drawn units on the same walks; None when there are none."""
+    others = scores_by_method([row for result in results for row in result.others])
+    if not others:
+        return None
+    count = len(next(iter(others.values())))
+    columns = [f"{error}\n{column}" for error in ("final", "average") for column in ("mean", "median", "p90")]
+    table = new_table("", *columns)
+    for name, scores in others.items():
+        cells = []
+        for key in _ERRORS:
+            cells += [f"{value:.1f}" for value in spread([getattr(score, key) for score in scores]).values()]
+        table.add_row(name, *cells)
+    return titled(
+        f"{count} other units of the same sheet, drawn and not chosen, on the same walks (deg)", table
+    )
+
+
+def position_table(results: Sequence[Result]) -> Group:
+    """Distance and position errors, mean over the walks."""
+    table = new_table(
+        "",
+        "distance\nerror %",
+        "return\nerror %",
+        "position\nRMSE m",
+        "final position\nerror m",
+    )
+    for name, scores in scores_by_method([result.scores for result in results]).items():
+        mean = mean_score(scores)
+        table.add_row(
+            name,
+            f"{mean.distance_error_pct:+.2f}",
+            f"{mean.return_error_pct:.2f}",
+            f"{mean.position_rmse_m:.1f}",
+            f"{mean.position_error_final_m:.1f}",
+        )
+    return titled("Position, mean over the walks", table)
+
+
+_SCORE_LABELS = {
+    "heading_error_mean_deg": "heading error, mean (deg)",
+    "heading_error_final_deg": "heading error, final (deg)",
+    "return_error_pct": "return error (% of the distance)",
+    "distance_error_pct": "distance error (%)",
+    "position_rmse_m": "position error, RMS (m)",
+    "position_error_final_m": "position error, final (m)",
+}
+
+
+_ALIGNED = {
+    "none": "as it is, nothing fitted",
+    "start": "its first row laid on the truth",
+    "yaw": "its first row moved there, the turn fitted",
+    "rigid": "shift and turn fitted",
+}
+
+
+def score_table(score: Score, align: Align = "none") -> Group:
+    """One row a figure, and above them what was fitted."""
+    table = new_table("", "")
+    for key, value in score.as_dict().items():
+        table.add_row(_SCORE_LABELS[key], f"{value:.3f}")
+    return titled(f"Errors, estimate against truth ({_ALIGNED[align]})", table)
+
+
+def _pair(score: Score) -> str:
+    return f"{score.heading_error_final_deg:.1f} / {score.heading_error_mean_deg:.1f}"
+
+
+def _gain(row: Mapping[str, Score], name: str) -> str:
+    """On a line of its own: how many times smaller than without correction, where that was scored."""
+    if name == "pdr" or "pdr" not in row:
+        return ""
+    factor = improvement(row["pdr"], row[name])
+    return f"\n{factor.final:.1f}x / {factor.mean:.1f}x"

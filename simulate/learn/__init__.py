@@ -1,0 +1,1 @@
+"""The walker as gymnasium environments, and its training."""

@@ -1,0 +1,1 @@
+"""The moving body: state, laws, kernels."""

@@ -1,0 +1,101 @@
+"""Compiled: the first step. The weight goes to one foot, the other one steps, and a loaded foot lies still.
+
+Laws in terms of one walker `s` (see state.py). People take half a second to shift their weight before the
+first foot leaves the ground. Until that foot lands, the torques of a loaded foot's ankle and hip rotation are
+kept within what leaves the pressure under the sole, and the sole where it is: the gait, made for mid-walk,
+would else rock the foot on to its heel and twist it. After a stop the feet stand one before the other and
+apart; from there such a slow first step falls more often than the gait's quick one, which is kept there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba.extending import register_jitable
+
+from footfall.models.body import JOINTS, SENSOR_TOUCH
+from footfall.models.gait import INDEX, mask
+from footfall.simulate.walker._elementwise import choose, clip
+
+# The shift: hips that push sideways and ankles that let the body fall forwards (rad), within `_SHIFT_S`. The
+# first step begins as soon as the foot that is to make it carries no more than `_UNLOADED` body weights.
+_SIDEWAYS, _FORWARDS = 0.10, 0.15
+_SHIFT_S, _LONGEST_S, _SHORTEST_S = 0.40, 0.50, 0.1
+_UNLOADED = 0.25
+_LIFTED = 0.2  # body weights; a foot that carries less may do what a swinging foot does
+_LANDED, _LATEST = 0.05, 0.3  # body weights on it, or so far into the next step, end the first one
+# Lever arms (m) of a loaded foot's torques over the force on it: its centre of pressure stays so far
+# before the ankle and so near its middle line, and what turns it is a sixth of what friction can hold.
+_BACK, _FRONT = 0.005, 0.10
+_ASIDE, _TURN = 0.02, 0.01
+
+_PUSH_ASIDE = mask("hip_adduction_r") - mask("hip_adduction_l")
+_LET_FALL = mask("ankle")
+_TOUCH_R, _TOUCH_L = SENSOR_TOUCH.start, SENSOR_TOUCH.start + 3
+# The servos of a leg are in a row, and so are its joints.
+_RIGHT, _LEFT = INDEX["hip_flexion_r"], INDEX["hip_flexion_l"]
+_RIGHT_JOINT, _LEFT_JOINT = JOINTS.index("hip_flexion_r"), JOINTS.index("hip_flexion_l")
+_ROTATION, _ANKLE, _SUBTALAR = (INDEX[f"{name}_r"] - _RIGHT for name in ("hip_rotation", "ankle", "subtalar"))
+
+
+@register_jitable
+def as_placed(s):  # type: ignore[no-untyped-def]
+    """The feet are side by side, where they were set down before the walk: it has not stopped yet."""
+    return (s.stagger == 0.0) & (s.spread == 0.0)
+
+
+@register_jitable
+def loads(s):  # type: ignore[no-untyped-def]
+    """Force on the right and the left foot (N)."""
+    right = s.sensor[_TOUCH_R] + s.sensor[_TOUCH_R + 1] + s.sensor[_TOUCH_R + 2]
+    left = s.sensor[_TOUCH_L] + s.sensor[_TOUCH_L + 1] + s.sensor[_TOUCH_L + 2]
+    return right, left
+
+
+@register_jitable
+def set_out(s, wish, step_phase):  # type: ignore[no-untyped-def]
+    """Shift the weight of who stands and wishes to walk; True once the first step may begin."""
+    shifts = as_placed(s) & s.closing & (s.gate <= 0) & wish
+    s.left_first = choose(shifts, s.left_stance, s.left_first)
+    right, left = loads(s)
+    stepping = choose(s.left_first, right, left)
+    landed = (s.left_stance != s.left_first) & ((stepping > _LANDED * s.weight) | (step_phase > _LATEST))
+    s.setting_out = shifts | (s.setting_out & np.logical_not(s.closing | landed))
+    s.shift = choose(shifts, s.shift + s.dt, choose(s.setting_out, s.shift, 0.0))
+    unloaded = (s.shift > _SHORTEST_S) & (stepping < _UNLOADED * s.weight)
+    return wish & (unloaded | (s.shift > _LONGEST_S) | np.logical_not(shifts))
+
+
+@register_jitable
+def shifted(s, j):  # type: ignore[no-untyped-def]
+    """Offset (rad) of servo j's target in standing that shifts the weight."""
+    aside = choose(s.left_first, -_SIDEWAYS, _SIDEWAYS)
+    return np.minimum(s.shift / _SHIFT_S, 1.0) * (aside * _PUSH_ASIDE[j] + _FORWARDS * _LET_FALL[j])
+
+
+@register_jitable
+def bound(s, ref, out, held, servo, joint, low, high):  # type: ignore[no-untyped-def]
+    """Clip a servo's targets in `out` (k, 17) so that its torque on a held foot is `low` to `high` (Nm)."""
+    count, rate = len(out), s.qvel[6 + joint]
+    least, most = (low + ref.kv[servo] * rate) / ref.kp[servo], (high + ref.kv[servo] * rate) / ref.kp[servo]
+    for i in range(count):
+        angle = s.qpos[7 + joint] + rate * s.dt * ((i + 1) / count)
+        out[i, servo] = choose(held, clip(out[i, servo], angle + least, angle + most), out[i, servo])
+
+
+@register_jitable
+def bound_foot(s, ref, out, stands, load, servo, joint):  # type: ignore[no-untyped-def]
+    """`bound` what acts on one foot; `servo`, `joint`: the first of its leg."""
+    held = s.setting_out & (stands | (load > _LIFTED * s.weight))
+    force = np.maximum(load, _LIFTED * s.weight)
+    turn, aside = _TURN * force, _ASIDE * force
+    bound(s, ref, out, held, servo + _ANKLE, joint + _ANKLE, -_FRONT * force, -_BACK * force)
+    bound(s, ref, out, held, servo + _ROTATION, joint + _ROTATION, -turn, turn)
+    bound(s, ref, out, held, servo + _SUBTALAR, joint + _SUBTALAR, -aside, aside)
+
+
+@register_jitable
+def hold_feet(s, ref, out):  # type: ignore[no-untyped-def]
+    """Bound the servo targets `out` (k, 17) of who sets out so that loaded feet lie still."""
+    right, left = loads(s)
+    bound_foot(s, ref, out, np.logical_not(s.left_first), right, _RIGHT, _RIGHT_JOINT)
+    bound_foot(s, ref, out, s.left_first, left, _LEFT, _LEFT_JOINT)

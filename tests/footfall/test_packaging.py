@@ -1,0 +1,128 @@
+"""What a newcomer gets: the two README lines, a package that imports whole, data files, links that work."""
+
+import importlib
+import importlib.metadata
+import os
+import pkgutil
+import re
+import subprocess
+import tomllib
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+import footfall
+from footfall.models.imu import load_spec, stock_specs
+from footfall.models.imu.spec import ACCEL_KEYS, GYRO_KEYS, ThermalSheet
+from footfall.models.policy import stock_policy
+from footfall.scenarios.path import Arc, Corner, Straight
+from footfall.scenarios.scenario import ScenarioFile, stock_scenarios
+from tests.helpers.places import ROOT
+
+ROOMS = ("hdr", "models", "pdr", "scenarios", "simulate")
+TRAINING = {"footfall.simulate.learn.ppo", "footfall.simulate.learn.train"}  # need footfall[train]
+MODULES = sorted(module.name for module in pkgutil.walk_packages(footfall.__path__, "footfall."))
+
+
+@pytest.fixture
+def checkout() -> Path:
+    """The source tree; these tests also run away from it, against an installed wheel."""
+    if not (ROOT / "pyproject.toml").is_file():
+        pytest.skip("no source tree around these tests")
+    return ROOT
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_every_module_imports(name):
+    if name in TRAINING:
+        pytest.importorskip("torch", reason="training needs footfall[train], gigabytes that CI does without")
+        pytest.importorskip("cma", reason="training needs footfall[train]")
+    importlib.import_module(name)
+
+
+def test_every_file_of_the_rooms_is_a_module(checkout):
+    found = {
+        ".".join(("footfall", *file.relative_to(checkout).with_suffix("").parts))
+        for room in ROOMS
+        for file in (checkout / room).rglob("*.py")
+        if file.name != "__init__.py"
+    }
+    assert found <= set(MODULES)
+    assert found >= TRAINING
+
+
+def test_data_files_come_with_the_package():
+    assert {"nimu", "perfect"}.issubset(stock_specs())
+    assert all(load_spec(name).name for name in stock_specs())
+    assert {"straight", "curving", "turning", "closed-loop", "closed-loop-gentle"}.issubset(stock_scenarios())
+    assert stock_policy().weights
+    assert files("footfall").joinpath("py.typed").is_file()
+
+
+def test_one_version():
+    assert importlib.metadata.version("footfall") == footfall.__version__
+
+
+def test_the_version_is_the_one_declared_and_cited(checkout):
+    project = tomllib.loads((checkout / "pyproject.toml").read_text())["project"]
+    assert project["version"] == footfall.__version__
+    assert f"\nversion: {footfall.__version__}\n" in (checkout / "CITATION.cff").read_text()
+    assert f"## {footfall.__version__}" in (checkout / "CHANGELOG.md").read_text()
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_the_package_links_to_its_rooms(checkout, room):
+    assert os.readlink(checkout / "footfall" / room) == f"../{room}"
+
+
+def commands(readme: str) -> list[str]:
+    """The lines of the README that set up a fresh machine."""
+    return re.findall(r"^python3 -m venv .*$", readme, flags=re.MULTILINE)
+
+
+def test_the_readme_has_two_lines_that_do_everything(checkout):
+    main_job, tests = commands((checkout / "README.md").read_text())
+    assert main_job.endswith("footfall run closed-loop")
+    assert "pytest" in tests.split("&&")[-1]
+
+
+def test_ci_runs_the_readmes_test_line(checkout):
+    script = (checkout / ".ci" / "run").read_text()
+    (extraction,) = re.findall(r"^line=\$\((.*)\)$", script, flags=re.MULTILINE)
+    found = subprocess.run(
+        ["bash", "-c", extraction], cwd=checkout, capture_output=True, text=True, check=True
+    ).stdout
+    assert found.splitlines() == commands((checkout / "README.md").read_text())[1:]
+    assert '-c "$line"' in script
+    assert os.access(checkout / ".ci" / "run", os.X_OK)
+
+
+PAGES = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md"]
+PAGES += sorted(str(file.relative_to(ROOT)) for file in ROOT.glob("docs/*.md"))
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_between_pages_lead_somewhere(checkout, page):
+    text = (checkout / page).read_text()
+    targets = re.findall(r"\]\(([^)#\s]+)[^)]*\)", text)
+    here = (checkout / page).parent
+    broken = [target for target in targets if "://" not in target and not (here / target).exists()]
+    assert not broken
+
+
+def test_the_docs_map_names_every_page(checkout):
+    index = (checkout / "docs" / "index.md").read_text()
+    pages = {file.name for file in (checkout / "docs").glob("*.md")} - {"index.md"}
+    assert pages == set(re.findall(r"\]\((\w+\.md)\)", index))
+
+
+def test_documented_keys_are_the_ones_that_exist(checkout):
+    sensor = (checkout / "docs" / "sensor.md").read_text()
+    for key in {*GYRO_KEYS, *ACCEL_KEYS, *ThermalSheet.model_fields}:
+        assert f"`{key}`" in sensor, key
+    scenarios = (checkout / "docs" / "scenarios.md").read_text()
+    tables = [ScenarioFile, *(field.annotation for field in ScenarioFile.model_fields.values())]
+    for table in [*tables, Straight, Arc, Corner]:
+        for key in getattr(table, "model_fields", {}):
+            assert re.search(rf"[`\[ ]{key}[`\] ]", scenarios), key

@@ -1,0 +1,107 @@
+"""The command as a program of its own: exit codes, streams, workers, and what importing it loads."""
+
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.commands import SCORES, expect_one_sentence, one_document
+
+
+def shell(line, folder, **options):
+    command = [sys.executable, "-m", "footfall.cli.app", *shlex.split(line)]
+    return subprocess.Popen(
+        command, cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options
+    )
+
+
+def test_the_program_prints_one_document_and_ends_well(here):
+    process = shell("score hdr.parquet walk.parquet --json", here)
+    out, err = process.communicate()
+    assert (process.returncode, err) == (0, "")
+    assert set(one_document(out)) == {"align", *SCORES}
+
+
+def test_the_program_ends_with_code_2_and_one_sentence(here):
+    process = shell("track walk.csv -o t.parquet", here)
+    out, err = process.communicate()
+    expect_one_sentence(process.returncode, out, err, "walk.csv: no such file")
+
+
+def members(session):
+    """Processes of a session, but for the dead that are not yet buried."""
+    found = []
+    for process in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            stat = Path(f"/proc/{process}/stat").read_text()
+        except OSError:  # gone meanwhile
+            continue
+        state, _, _, of = stat.rpartition(")")[2].split()[:4]
+        if int(of) == session and state != "Z":
+            found.append(int(process))
+    return found
+
+
+def wait_until(condition):
+    """Give up after a minute, which is no judgement of speed."""
+    for _ in range(600):
+        if condition():
+            return
+        time.sleep(0.1)
+    pytest.fail("it never happened")
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="needs /proc")
+@pytest.mark.parametrize("ending", ["ctrl-c", "kill"])
+def test_workers_end_with_their_parent(here, ending):
+    """Ctrl-C goes to all processes of the terminal, a kill to the parent alone; neither may leave workers."""
+    if len(os.sched_getaffinity(0)) < 2:
+        pytest.skip("on one core there are no workers")
+    # A suite in the background of a shell ignores Ctrl-C, and so would what it starts.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        process = shell("run straight --walks 4 --no-cache --out new", here, start_new_session=True)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    wait_until(lambda: len(members(process.pid)) >= 3 or process.poll() is not None)
+    assert process.poll() is None
+    if ending == "ctrl-c":
+        os.killpg(process.pid, signal.SIGINT)
+        _, err = process.communicate()
+        assert (process.returncode, err) == (130, "footfall: interrupted\n")
+        assert not (here / "new").exists()
+    else:
+        process.kill()
+        process.communicate()
+    wait_until(lambda: not members(process.pid))
+
+
+def test_importing_the_command_line_loads_nothing_heavy():
+    """Neither the learner nor pictures nor the physics with its graphics, and no room by its bare name."""
+    heavy = ("torch", "matplotlib", "OpenGL", "glfw", "mujoco", "numba", "scipy")
+    rooms = ("models", "simulate", "pdr", "hdr", "scenarios")
+    code = (
+        "import sys, footfall, footfall.cli.app\n"
+        f"print([name for name in sys.modules if name.split('.')[0] in {heavy + rooms!r}])"
+    )
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"
+
+
+def test_no_module_imports_a_room_by_its_bare_name_nor_pictures_nor_the_learner():
+    """Every module but those of the training."""
+    code = """
+import importlib, pkgutil, sys, footfall
+for module in pkgutil.walk_packages(footfall.__path__, "footfall."):
+    if module.name not in ("footfall.simulate.learn.ppo", "footfall.simulate.learn.train"):
+        importlib.import_module(module.name)
+strangers = {"models", "simulate", "pdr", "hdr", "scenarios", "torch", "matplotlib"}
+print(sorted(strangers & {name.split(".")[0] for name in sys.modules}))
+"""
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"

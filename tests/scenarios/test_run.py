@@ -1,0 +1,316 @@
+"""`footfall run`: what it computes, prints and leaves in its folder."""
+
+import json
+import math
+import os
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from footfall.errors import InputError
+from footfall.hdr import methods
+from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
+from footfall.recording import read_recording
+from footfall.scenarios.judge.score import score
+from footfall.scenarios.report.results import results_folder, write_results
+from footfall.scenarios.run import (
+    OTHER_NOISES_FROM,
+    OTHER_UNITS_FROM,
+    perform,
+    perform_all,
+    reckoning,
+    start_pose,
+    tasks,
+)
+from footfall.scenarios.scenario import load_scenario
+from footfall.simulate.record import record
+from footfall.simulate.walk import read_walk
+from footfall.tables import read_table
+from tests.helpers.commands import SCORES, content, one_document
+
+FIGURES = {"maps.png", "heading_error.png", "drift_budget.png", "filtered_rates.png", "controller.png"}
+
+
+def files_of(walk, *methods):
+    return {f"walk-{walk}{part}.parquet" for part in ("", ".footfalls", ".recording", ".drift")} | {
+        f"walk-{walk}.{method}.parquet" for method in methods
+    }
+
+
+@pytest.fixture(scope="module")
+def done(workshop):
+    """One walk of the short scenario, all methods, two further units and three further noises."""
+    scenario = load_scenario(workshop / "short.toml")
+    (task,) = tasks(scenario, walks=1, methods=("pdr", "hdr", "hdr-basic"), other_units=2, noises=3)
+    return perform(task)
+
+
+# What is to be done
+
+
+def test_seeds_units_and_subjects_of_the_walks(workshop):
+    scenario = load_scenario(workshop / "short.toml")
+    todo = tasks(scenario, other_units=5)
+    assert [(task.number, task.walk_seed, task.unit_seed) for task in todo] == [(0, 3, 3), (1, 4, 4)]
+    chosen = replace(scenario, units=(70, 90))
+    assert [task.unit_seed for task in tasks(chosen, walks=3)] == [70, 90, 70]
+    # The chosen units belong to the scenario's own sheet and walks.
+    assert [task.unit_seed for task in tasks(chosen, imu="perfect")] == [3, 4]
+    assert [(task.walk_seed, task.unit_seed) for task in tasks(chosen, seed=20)] == [(20, 20), (21, 21)]
+    assert [scenario.plan(task.number).subject.name for task in todo] == ["reference", "shorter"]
+
+
+@pytest.mark.parametrize(("walks", "units"), [(1, 3), (2, 5), (4, 3), (3, 0)])
+def test_every_other_unit_is_scored_once(workshop, walks, units):
+    todo = tasks(load_scenario(workshop / "short.toml"), walks=walks, other_units=units)
+    seeds = [seed for task in todo for seed in task.others]
+    assert sorted(seeds) == list(range(OTHER_UNITS_FROM, OTHER_UNITS_FROM + units))
+    assert max(len(task.others) for task in todo) - min(len(task.others) for task in todo) <= 1
+
+
+def test_one_unit_has_one_noise_unless_asked_and_every_further_noise_is_of_one_walk(workshop):
+    scenario = load_scenario(workshop / "short.toml")
+    todo = tasks(replace(scenario, units=(70, 90)), walks=3, noises=4)
+    assert [task.noise_seed for task in todo] == [task.unit_seed for task in todo] == [70, 90, 70]
+    seeds = [seed for task in todo for seed in task.noises]
+    assert [len(task.noises) for task in todo] == [4, 4, 4]
+    assert sorted(seeds) == list(range(OTHER_NOISES_FROM, OTHER_NOISES_FROM + 12))
+    assert [task.noises for task in tasks(scenario)] == [(), ()]
+
+
+# What is computed
+
+
+def test_the_scores_are_those_of_the_tracks_against_the_walk(done):
+    assert list(done.scores) == list(done.tracks) == ["pdr", "hdr", "hdr-basic"]
+    for name, track in done.tracks.items():
+        assert done.scores[name] == score(track, done.walk)
+    assert len(done.others) == 2
+    assert all(list(other) == list(done.tracks) for other in done.others)
+    assert done.others[0]["pdr"] != done.others[1]["pdr"]
+
+
+def test_further_units_and_noises_are_what_their_recordings_give(done):
+    """A further unit in its own noise; the walk's own unit in further noise; each in the walk's cold."""
+    task, cold = done.task, done.task.scenario.temperature_of(done.task.number)
+    spec = load_spec(task.imu)
+    pairs = [*((unit, unit) for unit in task.others), *((task.unit_seed, noise) for noise in task.noises)]
+    assert len(done.noises) == 3
+    for (unit, noise), found in zip(pairs, [*done.others, *done.noises], strict=True):
+        recording = record(done.walk, draw_unit(spec, unit), seed=noise, temperature=cold)
+        assert found["hdr"] == score(methods.track(recording, "hdr", start_pose(done.walk)), done.walk)
+    assert len({found["pdr"].heading_error_final_deg for found in (*done.noises, done.scores)}) == 4
+
+
+def test_each_walk_is_recorded_in_its_own_cold(workshop):
+    days = (TemperatureProfile.step(20.0, 20.0), TemperatureProfile.step(20.0, -30.0))
+    scenario = replace(load_scenario(workshop / "short.toml"), temperatures=days)
+    first, second = (perform(task) for task in tasks(scenario, methods=("pdr",), other_units=2, noises=1))
+    assert [done.recording.meta["temperature"]["ambient"] for done in (first, second)] == [(20.0,), (-30.0,)]
+    assert np.ptp(first.recording.temperature) == 0
+    assert second.recording.temperature[-1] < 19
+    # The same unit in the same noise of the same walk is turned otherwise where it is warm.
+    warm = replace(second.task, scenario=replace(scenario, temperatures=days[:1]))
+    again = perform(warm)
+    for name in ("scores", "others", "noises"):
+        assert getattr(again, name) != getattr(second, name)
+
+
+def test_the_drift_budget_explains_the_uncorrected_heading(done):
+    """Its causes sum up to the drift, which integrates to PDR's heading error within half a degree."""
+    np.testing.assert_allclose(sum(done.budget.causes.values()), done.budget.total, atol=1e-12)
+    turned = np.degrees(np.sum(done.budget.total * done.budget.interval))
+    assert abs(turned) == pytest.approx(done.scores["pdr"].heading_error_final_deg, abs=0.5)
+
+
+def test_a_run_tells_rest_shift_and_the_paths_direction(workshop):
+    """Ten of 26 s of rest are averaged, the unit's bias shifts afterwards, and the path begins along x."""
+    scenario = replace(
+        load_scenario(workshop / "short.toml"), bias_time=10.0, bias_shift=math.radians(0.3), imu="perfect"
+    )
+    (task, *_) = tasks(scenario, walks=1, methods=["pdr", "ihde"])
+    result = perform(task)
+    shift = scenario.unit_bias_shift(task.unit_seed)
+    assert result.recording.meta["bias_shift"] == shift
+    assert np.sign(result.budget.total.mean()) == np.sign(shift)
+    walked = result.tracks["pdr"].t[-1] - 26
+    assert result.scores["pdr"].heading_error_final_deg == pytest.approx(0.3 * walked, rel=0.3)
+    told = reckoning(scenario, result.walk, result.recording)
+    assert (told.pdr.bias_s, told.directions.reference) == (10.0, 0.0)
+    assert told.start == start_pose(result.walk, 10.0)
+    assert told.guided.gyro_bias_sd == pytest.approx(math.radians(0.3))
+    sure = reckoning(replace(scenario, bias_shift=0.0), result.walk, result.recording)
+    assert sure.guided.gyro_bias_sd == pytest.approx(math.radians(0.1))
+    assert result.tracks["ihde"].meta["params"]["directions"]["reference"] == 0.0
+
+
+def test_a_start_that_is_no_rest_is_refused(done):
+    with pytest.raises(InputError, match=r"stands still for 26 s, less than the 27 s of T_bias"):
+        start_pose(done.walk, 27.0)
+
+
+def test_progress_runs_to_the_end_of_the_path_and_through_the_units(workshop):
+    scenario = load_scenario(workshop / "short.toml")
+    (task,) = tasks(scenario, walks=1, other_units=2, noises=1, use_cache=False)
+    said = []
+    perform(task, lambda metres, unit: said.append((metres, unit)))
+    metres = [at for at, _ in said]
+    assert metres == sorted(metres)
+    assert metres[-1] == scenario.path.route.length
+    assert [unit for _, unit in said if unit] == [1, 2, 3]
+    assert sum(unit == 0 for _, unit in said) > 3
+
+
+def test_workers_give_what_one_process_gives(workshop, done):
+    """In the order of the tasks, to the last bit."""
+    scenario = load_scenario(workshop / "short.toml")
+    todo = tasks(scenario, methods=("pdr", "hdr", "hdr-basic"))
+    calls = []
+    first, second = perform_all(todo, lambda *now: calls.append(now))
+    assert [result.task.number for result in (first, second)] == [0, 1]
+    assert first.scores == done.scores
+    np.testing.assert_array_equal(first.recording.gyro, done.recording.gyro)
+    assert second.walk.meta["subject"] == "shorter"
+    assert {index for index, _, _ in calls} <= {0, 1}
+
+
+def test_a_workers_mistake_is_the_callers(workshop, tmp_path):
+    sheet = tmp_path / "sheet.toml"
+    sheet.write_text('name = "mine"\n[gyro]\n[accel]\n')
+    todo = tasks(load_scenario(workshop / "short.toml"), imu=str(sheet))
+    sheet.unlink()
+    with pytest.raises(InputError, match=r"sheet.toml': neither a stock IMU"):
+        list(perform_all(todo))
+
+
+# What is left in the folder
+
+
+def test_one_walk_in_the_folder_and_on_the_terminal(cli, here):
+    code, out, err = cli("run short.toml --walks 1 --units 2 --noises 3 --out new/deep")
+    assert code == 0
+    assert err == "Scores, walks, tracks and figures are in new/deep\n"
+    assert max(map(len, out.splitlines())) <= 80
+    folder = here / "new" / "deep"
+    assert set(os.listdir(folder)) == files_of(1, "pdr", "hdr") | FIGURES | {"scores.json"}
+    scores = one_document((folder / "scores.json").read_text())
+    (row,) = scores["walks"]
+    for name in ("pdr", "hdr"):
+        assert set(row["methods"][name]) == SCORES
+        errors = row["methods"][name]
+        assert f"{errors['heading_error_final_deg']:.1f} / {errors['heading_error_mean_deg']:.1f}" in out
+        assert scores["mean"][name] == pytest.approx(errors)
+    assert scores["other_units"]["count"] == 2
+    assert "2 other units" in out
+    assert scores["other_noises"]["count"] == row["other_noises"]["count"] == 3
+    assert "3 other noises" in out
+    for figure in FIGURES:
+        with Image.open(folder / figure) as image:
+            assert image.width > 600
+            assert np.std(np.asarray(image.convert("L"))) > 5  # not blank
+
+
+def test_the_files_are_what_the_commands_make(cli, here):
+    """The walk, recording and tracks of a run are those of walk, record and track with the same seeds."""
+    assert cli("run short.toml --walks 1 --noises 0 --units 0 --out out")[0] == 0
+    assert cli("record walk.parquet --unit-seed 3 -o rec.parquet")[0] == 0
+    walk, theirs = read_walk("out/walk-1.parquet"), read_walk("walk.parquet")
+    np.testing.assert_array_equal(walk.gyro, theirs.gyro)
+    np.testing.assert_array_equal(walk.footfalls.heading, theirs.footfalls.heading)
+    recording = read_recording("out/walk-1.recording.parquet")
+    np.testing.assert_array_equal(recording.gyro, read_recording("rec.parquet").gyro)
+    # The start is the recording's own.
+    assert cli("track out/walk-1.recording.parquet --method pdr -o pdr.parquet")[0] == 0
+    assert cli("score pdr.parquet walk.parquet --json")[0] == 0
+    (ours, told), (alone, again) = read_table("out/walk-1.pdr.parquet"), read_table("pdr.parquet")
+    for name, values in ours.items():
+        np.testing.assert_array_equal(values, alone[name])
+    assert again == told | {"read": again["read"]}
+    drift, _ = read_table("out/walk-1.drift.parquet")
+    assert {"t", "interval", "temperature", "white", "total"} <= set(drift)
+
+
+def test_the_same_seed_gives_the_same_scores_to_the_last_byte(cli, here):
+    """Walked anew, walked anew again, and by way of the cache."""
+    for folder, options in (("a", "--no-cache"), ("b", "--no-cache"), ("c", ""), ("c", "")):
+        assert (
+            cli(f"run short.toml --walks 1 --units 1 --noises 1 --seed 11 {options} --out {folder}")[0] == 0
+        )
+    first = (here / "a" / "scores.json").read_bytes()
+    for folder in "bc":
+        assert (here / folder / "scores.json").read_bytes() == first
+    assert cli("run short.toml --walks 1 --noises 0 --units 1 --seed 12 --out e")[0] == 0
+    assert json.loads((here / "e" / "scores.json").read_text())["mean"] != json.loads(first)["mean"]
+
+
+def test_the_json_on_standard_output_is_the_file(cli, here):
+    code, out, _ = cli("run short.toml --walks 1 --units 0 --noises 0 --imu perfect --methods pdr --json")
+    assert code == 0
+    document = one_document(out)
+    assert document == json.loads((here / "out" / "short" / "scores.json").read_text())
+    assert set(document) == {"scenario", "distance_m", "duration_s", "versions", "walks", "mean"}
+    assert (document["scenario"], document["walks"][0]["imu"]) == ("short", "perfect")
+    assert document["distance_m"] == pytest.approx(30, abs=3)
+    assert document["mean"]["pdr"]["heading_error_final_deg"] < 0.2
+    assert abs(document["mean"]["pdr"]["distance_error_pct"]) < 1
+    assert set(os.listdir(here / "out" / "short")) == files_of(1, "pdr") | {
+        "maps.png",
+        "heading_error.png",
+        "drift_budget.png",
+        "scores.json",
+    }
+
+
+def test_a_later_run_leaves_nothing_of_an_earlier_one_and_all_of_its_users(cli, here):
+    assert cli("run short.toml --walks 2 --noises 0 --units 0 --out new")[0] == 0
+    for name in ("notes.txt", "walk-1.mine.parquet", "walk-2.png"):
+        (here / "new" / name).write_text("mine")
+    assert cli("run short.toml --walks 1 --noises 0 --units 0 --methods pdr --out new")[0] == 0
+    left = files_of(1, "pdr") | FIGURES - {"filtered_rates.png", "controller.png"} | {"scores.json"}
+    assert set(os.listdir(here / "new")) == left | {"notes.txt", "walk-1.mine.parquet", "walk-2.png"}
+
+
+def test_a_results_folder_is_taken_away_again_where_the_work_fails(tmp_path):
+    (tmp_path / "old").mkdir()
+    (tmp_path / "old" / "kept.txt").touch()
+    before = content(tmp_path)
+
+    def fail(folder, leaving=None):
+        with results_folder(folder):
+            assert folder.is_dir()
+            if leaving:
+                (folder / leaving).touch()
+            raise KeyboardInterrupt
+
+    for folder in (tmp_path / "old", tmp_path / "old" / "a" / "b", tmp_path / "new"):
+        with pytest.raises(KeyboardInterrupt):
+            fail(folder)
+        assert content(tmp_path) == before
+    with pytest.raises(KeyboardInterrupt):
+        fail(tmp_path / "new", leaving="someone-elses.txt")
+    assert os.listdir(tmp_path / "new") == ["someone-elses.txt"]
+
+
+@pytest.mark.parametrize("trouble", ["a folder in the way", "a full disk", "an interrupt"])
+def test_results_are_written_all_or_none(done, tmp_path, monkeypatch, trouble):
+    (tmp_path / "scores.json").write_text("an earlier run's")
+    expected = InputError
+    if trouble == "a folder in the way":
+        (tmp_path / "maps.png").mkdir()
+        message = r"maps\.png: a folder stands where a result is to be written"
+    else:
+        error = OSError(28, "No space left on device") if trouble == "a full disk" else KeyboardInterrupt()
+
+        def fail(*_):
+            raise error
+
+        monkeypatch.setattr("footfall.scenarios.report.results.run_figures", fail)
+        message = r"cannot be written \(No space left on device\)"
+        if trouble == "an interrupt":
+            expected, message = KeyboardInterrupt, None
+    before = content(tmp_path)
+    with pytest.raises(expected, match=message):
+        write_results([done], {"scenario": "short"}, tmp_path)
+    assert content(tmp_path) == before
