@@ -90,6 +90,19 @@ def digest_of(*values: Any) -> str:
     return digest.hexdigest()
 
 
+def content_digest(*arrays: np.ndarray | None) -> str:
+    """SHA-256 (64 hex digits) of kind, shape and bits of arrays; None for one that is not there."""
+    digest = hashlib.sha256()
+    for array in arrays:
+        if array is None:
+            digest.update(b"none")
+            continue
+        whole = np.ascontiguousarray(array)
+        digest.update(f"({whole.dtype.str}{whole.shape}".encode())
+        digest.update(whole.data)
+    return digest.hexdigest()
+
+
 def _feed(digest: Any, value: Any) -> None:
     """Take in `value`; everything with its kind and length, so that no two contents read the same."""
     if is_dataclass(value) and not isinstance(value, type):

@@ -5,11 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from footfall.errors import InputError
+from footfall.identity import content_digest
 from footfall.tables import read_table, require_columns, write_table
 
 GYRO = ("gyro_x", "gyro_y", "gyro_z")
@@ -43,6 +45,11 @@ class Recording:
     accel: np.ndarray
     temperature: np.ndarray | None = None
     meta: Mapping[str, Any] = field(default_factory=dict)
+
+    @cached_property
+    def sha(self) -> str:
+        """Hash of the content: the same for the same bits, wherever they come from."""
+        return content_digest(self.t, self.gyro, self.accel, self.temperature)
 
     def __post_init__(self) -> None:
         n = len(self.t)

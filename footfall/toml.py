@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -30,20 +30,41 @@ def read_toml(path: str | os.PathLike[str], model: type[Model]) -> Model:
     InputError
         No such file, not TOML, or the first key that the model refuses, with its value and the reason.
     """
+    return checked(parse_toml(path), model, str(Path(path)))
+
+
+def parse_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """The content of a TOML file, unchecked.
+
+    Raises
+    ------
+    InputError
+        No such file, or not TOML.
+    """
     source = Path(path)
     try:
-        content = tomllib.loads(source.read_text(encoding="utf-8"))
+        return tomllib.loads(source.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"{source}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError as error:
         raise InputError(f"{source}: not UTF-8 text ({error.reason})") from None
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{source}: not valid TOML ({error})") from None
+
+
+def checked(table: Mapping[str, Any], model: type[Model], source: str) -> Model:
+    """`table`, which came from `source`, as a `model`.
+
+    Raises
+    ------
+    InputError
+        The first key that the model refuses, with its value and the reason.
+    """
     try:
-        return model.model_validate(content)
+        return model.model_validate(table)
     except ValidationError as error:
         first = error.errors()[0]
-        key = ".".join(_written(content, first["loc"]))
+        key = ".".join(_written(table, first["loc"]))
         if first["type"] == "extra_forbidden":
             raise InputError(f"{source}: unknown key {key!r} = {first['input']!r}") from None
         if first["type"] == "missing":

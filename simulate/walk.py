@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 
 from footfall.conventions import heading_of
 from footfall.errors import InputError
+from footfall.identity import content_digest
 from footfall.tables import Columns, read_table, require_columns, write_table
 
 POSE = ("px", "py", "pz", "qw", "qx", "qy", "qz", "vx", "vy", "vz")
@@ -84,6 +86,15 @@ class Walk:
     def calibration_s(self) -> float:
         """Length of the motionless start (s)."""
         return float(self.meta.get("calibration_s", 0.0))
+
+    @cached_property
+    def sha(self) -> str:
+        """Hash of the content: the same for the same bits, whatever they are called."""
+        falls = self.footfalls
+        return content_digest(
+            *(self.t, self.position, self.quaternion, self.velocity, self.gyro, self.accel, self.contact),
+            *(self.stance, falls.t, falls.position, falls.heading),
+        )
 
     def pose_at_rest(self, after_s: float) -> tuple[tuple[float, float, float], float]:
         """Position (m) and heading (rad) of the IMU `after_s` into the motionless start, or at its end."""

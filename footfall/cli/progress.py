@@ -1,37 +1,36 @@
-"""Progress of a run, for people who watch a terminal."""
+"""Progress of trials, for people who watch a terminal."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from contextlib import closing
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from footfall.cli.terminal import ERR
-from footfall.scenarios.run import Result, Task, perform_all
+from footfall.scenarios.execute import Progress as Done
+from footfall.scenarios.run import Part, Result, perform_run
 
 
-def perform_showing(todo: Sequence[Task]) -> list[Result]:
-    """All results, with one progress bar a walk."""
-    length = todo[0].scenario.path.route.length
+@contextmanager
+def showing() -> Iterator[Callable[[Done], None]]:
+    """One bar for the metres walked and one for the trials; nothing where there is no terminal."""
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=ERR, transient=True, disable=not ERR.is_terminal) as bars:
+        walked = bars.add_task("metres walked", total=None)
+        tried = bars.add_task("recordings navigated", total=None)
+        lengths: list[float] = []
 
-    def show(index: int, metres: float, count: int) -> None:
-        task = todo[index]
-        units, noises = len(task.others), len(task.noises)
-        label = f"walk {task.number + 1}, unit {task.unit_seed}"
-        if count > units:
-            label = f"walk {task.number + 1}, other noise {count - units} of {noises}"
-        elif count:
-            label = f"walk {task.number + 1}, other unit {count} of {units}"
-        progress.update(bars[index], completed=round(metres), description=label)
+        def show(now: Done) -> None:
+            if not lengths:
+                lengths.extend(trial.plan.route.length for trial in now.walks)
+            bars.update(walked, completed=round(sum(now.metres)), total=round(sum(lengths)))
+            bars.update(tried, completed=now.done, total=now.trials)
 
-    text, metre = TextColumn("{task.description}"), TextColumn("m")
-    columns = (text, BarColumn(), MofNCompleteColumn(), metre, TimeElapsedColumn())
-    with Progress(*columns, console=ERR, transient=True, disable=not ERR.is_terminal) as progress:
-        bars = [progress.add_task(f"walk {task.number + 1}", total=round(length)) for task in todo]
-        results = []
-        with closing(perform_all(todo, show)) as performed:
-            for index, result in enumerate(performed):
-                show(index, length, 0)
-                results.append(result)
-    return results
+        yield show
+
+
+def perform_showing(todo: Sequence[Part], use_cache: bool) -> list[Result]:
+    """All results of a run, with its progress."""
+    with showing() as show:
+        return perform_run(todo, use_cache=use_cache, on_progress=show)

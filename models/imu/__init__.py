@@ -1,7 +1,16 @@
 """What a real IMU does to true rates and forces: data sheets, units drawn from them, error effects."""
 
 from footfall.models.imu.effects import EFFECTS, Channel, require_effects, stages
-from footfall.models.imu.spec import ImuSpec, ThermalSpec, TriadSpec, load_spec, stock_specs
+from footfall.models.imu.spec import (
+    ImuSpec,
+    SheetDocument,
+    ThermalSpec,
+    TriadSpec,
+    build_spec,
+    load_spec,
+    read_sheet,
+    stock_specs,
+)
 from footfall.models.imu.temperature import ROOM, TemperatureProfile
 from footfall.models.imu.unit import ImuUnit, TriadUnit, draw_unit
 
@@ -11,12 +20,15 @@ __all__ = [
     "Channel",
     "ImuSpec",
     "ImuUnit",
+    "SheetDocument",
     "TemperatureProfile",
     "ThermalSpec",
     "TriadSpec",
     "TriadUnit",
+    "build_spec",
     "draw_unit",
     "load_spec",
+    "read_sheet",
     "require_effects",
     "stages",
     "stock_specs",

@@ -13,7 +13,7 @@ from pydantic import BaseModel, Field, create_model
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
-from footfall.toml import Strict, read_toml
+from footfall.toml import Strict, checked, parse_toml
 
 SHEETS = Path(__file__).resolve().parent / "sheets"
 
@@ -171,6 +171,22 @@ def stock_specs() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in SHEETS.glob("*.toml")))
 
 
+@dataclass(frozen=True)
+class SheetDocument:
+    """A data sheet as it stands in TOML.
+
+    Attributes
+    ----------
+    name : as it was asked for: a stock name or a path
+    source : for messages
+    table : the keys, unchecked
+    """
+
+    name: str
+    source: str
+    table: Mapping[str, Any]
+
+
 def load_spec(name_or_path: str | os.PathLike[str]) -> ImuSpec:
     """A stock data sheet by name, or anyone's by the path of its TOML file.
 
@@ -180,17 +196,39 @@ def load_spec(name_or_path: str | os.PathLike[str]) -> ImuSpec:
         Neither a stock name nor a file; a key that is unknown, or its value of the wrong kind or negative; a
         non-linearity without a range.
     """
+    return build_spec(read_sheet(name_or_path))
+
+
+def read_sheet(name_or_path: str | os.PathLike[str]) -> SheetDocument:
+    """The document of a data sheet, unchecked.
+
+    Raises
+    ------
+    InputError
+        Neither a stock name nor a file, or not TOML.
+    """
     if (name := os.fspath(name_or_path)) in stock_specs():
         path = SHEETS / f"{name}.toml"
     elif not (path := Path(name)).is_file():
         stock = ", ".join(stock_specs())
         raise InputError(f"imu = {name!r}: neither a stock IMU ({stock}) nor a TOML file that exists")
-    sheet = read_toml(path, ImuSheet)
+    return SheetDocument(name, str(path), parse_toml(path))
+
+
+def build_spec(document: SheetDocument) -> ImuSpec:
+    """The model of IMU that a data sheet describes.
+
+    Raises
+    ------
+    InputError
+        A key that is unknown, or its value of the wrong kind or negative; a non-linearity without a range.
+    """
+    sheet = checked(document.table, ImuSheet, document.source)
     thermal = sheet.thermal
     return ImuSpec(
         name=sheet.name,
-        gyro=_triad(f"{path}: gyro", sheet.gyro, GYRO_KEYS),
-        accel=_triad(f"{path}: accel", sheet.accel, ACCEL_KEYS),
+        gyro=_triad(f"{document.source}: gyro", sheet.gyro, GYRO_KEYS),
+        accel=_triad(f"{document.source}: accel", sheet.accel, ACCEL_KEYS),
         thermal=ThermalSpec(
             time_constant=thermal.time_constant_s,
             reference=thermal.reference_degC,

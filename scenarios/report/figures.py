@@ -155,11 +155,11 @@ def _entitle(axis: Axes, text: str) -> None:
 
 
 def _walk(result: Result) -> str:
-    return f"Walk {result.task.number + 1}, unit {result.task.unit_seed}"
+    return f"Walk {result.trial.number + 1}, unit {result.trial.unit_seed}"
 
 
 def _named(results: Sequence[Result], what: str) -> str:
-    return f"{results[0].task.scenario.name}: {what}"
+    return f"{results[0].trial.setup.scenario.name}: {what}"
 
 
 def maps(results: Sequence[Result], title: str | None = None) -> Figure:
@@ -195,7 +195,7 @@ def heading_errors(results: Sequence[Result]) -> Figure:
             ends.append((float(minutes[-1]), float(error[-1])))
         axis.axhline(0, color=_TRUTH, lw=0.8)
         if len(results) > 1:
-            _number(axis, ends, [result.task.number + 1 for result in results])
+            _number(axis, ends, [result.trial.number + 1 for result in results])
         _entitle(axis, label_of(name))
     label_edges(axes, "time walked (min)", "heading error (deg)")
     numbers = " (numbers: walks)" if len(results) > 1 else ""
@@ -280,7 +280,7 @@ def filtered_rates(results: Sequence[Result], method: str = "hdr", count: int = 
         axis.plot(number, np.degrees(evidence[key][number]), color=colour, lw=width, label=label)
     axis.axhline(0, color=_TRUTH, lw=0.8)
     label_edges([axis], "footfall", "rate of turn (deg/s)")
-    title = f"rate of turn over the straightest {count} footfalls of walk {results[0].task.number + 1}"
+    title = f"rate of turn over the straightest {count} footfalls of walk {results[0].trial.number + 1}"
     head(figure, _named(results, title), [axis])
     return figure
 

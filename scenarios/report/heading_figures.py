@@ -71,7 +71,7 @@ def evaluation(result: Result, title: str | None = None) -> Figure:
     below.set_ylim(-0.05, 1.08)
     below.set_ylabel("E")
     label_edges([below], "time walked (s)", "E")
-    scenario, number = result.task.scenario.name, result.task.number + 1
+    scenario, number = result.trial.setup.scenario.name, result.trial.number + 1
     what = f"{scenario}: heading, and what {label_of(method)} makes of it, walk {number}"
     head(figure, title or what, [above, below])
     return figure

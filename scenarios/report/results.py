@@ -82,7 +82,7 @@ def write_results(results: Sequence[Result], document: Mapping[str, Any], folder
 
 def _write_all(results: Sequence[Result], document: Mapping[str, Any], folder: Path) -> None:
     for result in results:
-        stem = f"walk-{result.task.number + 1}"
+        stem = f"walk-{result.trial.number + 1}"
         write_walk(result.walk, folder / f"{stem}.parquet")
         write_recording(result.recording, folder / f"{stem}.recording.parquet")
         write_budget(result.budget, folder / f"{stem}.drift.parquet", dict(result.recording.meta))

@@ -49,10 +49,10 @@ def as_json(scenario: str, results: Sequence[Result]) -> dict[str, Any]:
         "versions": versions(),
         "walks": [
             {
-                "seed": result.task.walk_seed,
-                "imu": result.task.imu,
-                "unit": result.task.unit_seed,
-                "noise": result.task.noise_seed,
+                "seed": result.trial.walk_seed,
+                "imu": result.trial.setup.imu,
+                "unit": result.trial.unit_seed,
+                "noise": result.trial.noise_seed,
                 "subject": result.walk.meta["subject"],
                 "footfalls": len(next(iter(result.tracks.values()))),
                 "methods": {name: score.as_dict() for name, score in result.scores.items()},
@@ -110,7 +110,7 @@ def _duration(result: Result) -> float:
 
 def run_report(name: str, results: Sequence[Result]) -> list[RenderableType]:
     """What a run of the scenario `name` prints for people."""
-    first, distance = results[0].task, np.mean([_distance(result) for result in results])
+    first, distance = results[0].trial.setup, np.mean([_distance(result) for result in results])
     count = "1 walk" if len(results) == 1 else f"{len(results)} walks"
     parts: list[RenderableType] = [
         Text.assemble((name, "bold"), f": {count} of {distance:.0f} m, IMU {first.imu}"),
@@ -162,7 +162,7 @@ def heading_table(results: Sequence[Result]) -> Group:
     means = {name: mean_score(scores) for name, scores in scores_by_method(rows).items()}
     labels = ["pdr\n(uncorrected)" if name == "pdr" else name for name in means]
     table = new_table("walk", "unit", *labels)
-    walks = [(str(result.task.number + 1), str(result.task.unit_seed)) for result in results]
+    walks = [(str(result.trial.number + 1), str(result.trial.unit_seed)) for result in results]
     for (walk, unit), row in zip([*walks, ("mean", "")], [*rows, means], strict=True):
         cells = (_pair(score) + _gain(row, name) for name, score in row.items())
         table.add_row(walk, unit, *cells, style="bold" if walk == "mean" else None)
@@ -216,7 +216,7 @@ def noises_table(results: Sequence[Result]) -> Group | None:
     table = new_table(
         "walk", "", "final\nmedian", "smallest\nto largest", "average\nmedian", "smallest\nto largest", left=2
     )
-    walks = [(str(result.task.number + 1), result.noises) for result in results]
+    walks = [(str(result.trial.number + 1), result.noises) for result in results]
     for walk, rows in [*walks, ("mean", means)]:
         for name, errors in _extents(rows).items():
             cells = []

@@ -1,0 +1,262 @@
+"""Trials over the cores: every walk is simulated once, and workers send rows home, not walks."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import tempfile
+import threading
+from collections.abc import Callable, Collection, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from footfall.errors import InputError
+from footfall.models.policy import stock_policy
+from footfall.scenarios.trial import Outcome, Trial, failed, perform, walk_of
+from footfall.simulate.cache import plan_key
+from footfall.simulate.walk import Walk
+
+CHUNK = 10  # trials that a worker does in one go, with one walk in memory
+
+_shared: Any = None  # in a worker: metres walked, by walk
+_held: tuple[tuple[int, str], Walk | InputError] | None = None  # in a worker: the last walk
+
+
+@dataclass
+class Progress:
+    """How far the work is.
+
+    Attributes
+    ----------
+    walks : what is walked, in order; metres : of each, walked so far
+    trials, done : how many in all, and done
+    """
+
+    walks: tuple[Trial, ...]
+    metres: list[float]
+    trials: int
+    done: int = 0
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Trials that share a walk, and which of all they are."""
+
+    trials: list[Trial] = field(default_factory=list)
+    index: list[int] = field(default_factory=list)
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def execute(
+    trials: Sequence[Trial],
+    *,
+    workers: int | None = None,
+    use_cache: bool = True,
+    keep: Collection[int] = (),
+    on_progress: Callable[[Progress], None] | None = None,
+) -> Iterator[Outcome]:
+    """Perform every trial and yield the outcomes in order.
+
+    Where the generator is closed, or something breaks, workers are ended at once. What the physics, a
+    recording or a method refuses is an outcome like others, whose rows tell the reason.
+
+    Parameters
+    ----------
+    workers : processes; one a core when None; 1 works in this process
+    use_cache : whether walks are taken from the user's cache and kept there
+    keep : indices of the trials whose walk, recording, budget and tracks are wanted
+    on_progress : called about five times a second
+    """
+    groups: dict[str, _Group] = {}
+    policy, keys = stock_policy(), {}
+    for index, trial in enumerate(trials):
+        # Plans are big: each is hashed once, not once a trial.
+        short = (id(trial.setup.scenario), trial.number, trial.walk_seed)
+        if short not in keys:
+            keys[short] = plan_key(trial.plan, policy)
+        group = groups.setdefault(keys[short], _Group())
+        group.trials.append(trial)
+        group.index.append(index)
+    work = list(groups.values())
+    progress = Progress(tuple(group.trials[0] for group in work), [0.0] * len(work), len(trials))
+    with ExitStack() as stack:
+        folder = None if use_cache else Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        workers = min(workers or cores(), len(trials))
+        run = _here if workers <= 1 else partial(_spread, workers=workers)
+        yield from _in_order(run(work, folder, frozenset(keep), progress, on_progress or (lambda now: None)))
+
+
+def _in_order(found: Iterator[tuple[int, Outcome]]) -> Iterator[Outcome]:
+    """Outcomes by index, as soon as those before are there."""
+    waiting: dict[int, Outcome] = {}
+    following = 0
+    for index, outcome in found:
+        waiting[index] = outcome
+        while following in waiting:
+            yield waiting.pop(following)
+            following += 1
+
+
+def _here(
+    work: Sequence[_Group],
+    folder: Path | None,
+    keep: frozenset[int],
+    progress: Progress,
+    report: Callable[[Progress], None],
+) -> Iterator[tuple[int, Outcome]]:
+    """In this process."""
+    for at, group in enumerate(work):
+
+        def walked(metres: float, at: int = at) -> None:
+            progress.metres[at] = metres
+            report(progress)
+
+        walk = _walk(group.trials[0], folder, walked)
+        walked(group.trials[0].plan.route.length)
+        for index, trial in zip(group.index, group.trials, strict=True):
+            yield index, _one(trial, walk, index in keep)
+            progress.done += 1
+            report(progress)
+
+
+def _spread(
+    work: Sequence[_Group],
+    folder: Path | None,
+    keep: frozenset[int],
+    progress: Progress,
+    report: Callable[[Progress], None],
+    *,
+    workers: int,
+) -> Iterator[tuple[int, Outcome]]:
+    """Over processes: each walk is a job of its own; what needs it follows in chunks."""
+    with worker_pool(workers, len(work)) as (pool, metres):
+        walking: dict[Future[Any], int] = {
+            pool.submit(_walk_job, at, group.trials[0], folder): at for at, group in enumerate(work)
+        }
+        trying: set[Future[Any]] = set()
+        while walking or trying:
+            finished, _ = wait([*walking, *trying], timeout=0.2, return_when=FIRST_COMPLETED)
+            for future in finished:
+                if future in walking:
+                    at, refused = walking.pop(future), future.result()
+                    metres[at] = work[at].trials[0].plan.route.length
+                    if refused is not None:
+                        progress.done += len(work[at].trials)
+                        for index, trial in zip(work[at].index, work[at].trials, strict=True):
+                            yield index, failed(trial, refused)
+                        continue
+                    for part in _chunks(work[at]):
+                        kept = [index in keep for index in part.index]
+                        trying.add(pool.submit(_chunk_job, part, kept, folder))
+                else:
+                    trying.remove(future)
+                    found = future.result()
+                    progress.done += len(found)
+                    yield from found
+            progress.metres[:] = metres
+            report(progress)
+
+
+def _chunks(group: _Group) -> Iterator[_Group]:
+    for first in range(0, len(group.trials), CHUNK):
+        part = slice(first, first + CHUNK)
+        yield _Group(group.trials[part], group.index[part])
+
+
+def _walk(trial: Trial, folder: Path | None, report: Callable[[float], None] | None) -> Walk | InputError:
+    try:
+        return walk_of(trial, folder, report)
+    except InputError as error:
+        return error
+
+
+def _one(trial: Trial, walk: Walk | InputError, keep: bool) -> Outcome:
+    return failed(trial, walk) if isinstance(walk, InputError) else perform(trial, walk, keep=keep)
+
+
+def _walk_job(at: int, trial: Trial, folder: Path | None) -> InputError | None:
+    """In a worker: see that the walk is in the cache, or tell why it came to no end."""
+
+    def report(metres: float) -> None:
+        _shared[at] = metres
+
+    walk = _hold(trial, folder, report)
+    return walk if isinstance(walk, InputError) else None
+
+
+def _hold(
+    trial: Trial, folder: Path | None, report: Callable[[float], None] | None = None
+) -> Walk | InputError:
+    """The trial's walk, read once for all trials that follow each other on it."""
+    global _held
+    key = (trial.walk_seed, plan_key(trial.plan, stock_policy()))
+    if _held is None or _held[0] != key:
+        _held = None  # two walks at once would be too much
+        _held = key, _walk(trial, folder, report)
+    return _held[1]
+
+
+def _chunk_job(part: _Group, keep: Sequence[bool], folder: Path | None) -> list[tuple[int, Outcome]]:
+    """In a worker: trials on one walk."""
+    walk = _hold(part.trials[0], folder)
+    return [
+        (index, _one(trial, walk, kept))
+        for index, trial, kept in zip(part.index, part.trials, keep, strict=True)
+    ]
+
+
+def _start_worker(shared: Any) -> None:
+    """Take the shared numbers, and end when the parent ends, however it does."""
+    global _shared
+    _shared = shared
+
+    def follow() -> None:
+        parent = multiprocessing.parent_process()
+        assert parent is not None
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
+
+
+@contextmanager
+def worker_pool(workers: int, shared: int = 0) -> Iterator[tuple[ProcessPoolExecutor, Any]]:
+    """A pool of processes that end with this one, and at once where something breaks.
+
+    Parameters
+    ----------
+    shared : how many numbers the workers can write for this process to read
+
+    Yields
+    ------
+    The pool, and the shared numbers.
+    """
+    # Spawned, not forked: threads of the physics and of numerical libraries do not survive a fork.
+    context = multiprocessing.get_context("spawn")
+    numbers = context.RawArray("d", shared)
+    others = set(multiprocessing.active_children())
+    with ProcessPoolExecutor(workers, context, _start_worker, (numbers,)) as pool:
+        try:
+            # Ctrl-C is the parent's to answer: workers inherit that it is held back while they are started.
+            mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                # A spawning pool starts a worker with each job until all are there.
+                for started in [pool.submit(os.getpid) for _ in range(workers)]:
+                    started.result()
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+            yield pool, numbers
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for worker in set(multiprocessing.active_children()) - others:
+                worker.terminate()
+            raise

@@ -1,0 +1,334 @@
+"""Every parameter by its address: what there is, and a trial's documents with other values.
+
+`AREA.PATH`: the area tells which stage a new value repeats. Values pass the models that files pass.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+from footfall.hdr.method import Method
+
+from footfall.addresses import edited, keys, parse, pattern
+from footfall.errors import InputError
+from footfall.hdr.methods import METHODS
+from footfall.models.imu import SheetDocument, read_sheet
+from footfall.models.imu.override import CONSTANTS, overridden
+from footfall.models.imu.spec import ImuSheet
+from footfall.models.imu.unit import draw_unit
+from footfall.models.subject import SHOES, SUBJECTS
+from footfall.pdr.detectors import DETECTORS, require_detector
+from footfall.pdr.filter.ins import FilterSettings
+from footfall.pdr.reckoning import PdrParams
+from footfall.scenarios.scenario import (
+    ScenarioDocument,
+    ScenarioFile,
+    SubjectTable,
+    build_scenario,
+    read_document,
+)
+from footfall.scenarios.trial import DEFAULT_METHODS, Setup, find, setup
+from footfall.settings import changed, did_you_mean, kind_of, leaves
+
+STAGES = ("walk", "record", "reckon", "track")  # in the order of the data; a stage repeats all after it
+
+# What of a scenario does not concern the walk.
+_LATER = {
+    "scenario.temperature": "record",
+    "scenario.sensor.imu": "record",
+    "scenario.sensor.bias_shift_deg_s": "record",
+    "scenario.seeds.units": "record",
+    "scenario.sensor.bias_time_s": "reckon",
+}
+_NO_PARAMETERS = {"scenario.description", "imu.name"}
+_ENDINGS = {
+    "_deg_s_g2": "deg/s/g2", "_deg_s_g": "deg/s/g", "_deg_s_k2": "deg/s/K2", "_deg_s_k": "deg/s/K",
+    "_deg_rt_h": "deg/rt-h", "_deg_h_rt_h": "deg/h/rt-h", "_deg_h": "deg/h", "_deg_s": "deg/s", "_deg": "deg",
+    "_ug_rt_hz": "ug/rt-Hz", "_ug_rt_h": "ug/rt-h", "_ug_g2": "ug/g2", "_ug": "ug",
+    "_mg_k2": "mg/K2", "_mg_k": "mg/K", "_mg": "mg", "_g": "g", "_percent_fs": "% of full scale",
+    "_percent": "%", "_m_s": "m/s", "_degC": "degC", "_hz": "Hz", "_Ns": "N s", "_kg": "kg", "_m": "m", "_s": "s",
+}  # fmt: skip
+
+
+class Parameter(NamedTuple):
+    """One value that can be set.
+
+    stage : the first one that a new value repeats (`STAGES`)
+    """
+
+    address: str
+    type: str
+    unit: str
+    default: Any
+    bounds: str
+    stage: str
+
+
+@dataclass(frozen=True)
+class Documents:
+    """What a setup is built from.
+
+    Attributes
+    ----------
+    scenario, sheet : as they stand in TOML
+    methods : with their parameters
+    detector : name, or None for dead reckoning's default
+    pdr, guided, unit : edge name -> value, in place of the defaults
+    """
+
+    scenario: ScenarioDocument
+    sheet: SheetDocument
+    methods: tuple[Method, ...]
+    detector: str | None = None
+    pdr: Mapping[str, Any] = field(default_factory=dict)
+    guided: Mapping[str, Any] = field(default_factory=dict)
+    unit: Mapping[str, Any] = field(default_factory=dict)
+    without: tuple[str, ...] = ()
+
+    def setup(self) -> Setup:
+        """Checked and built.
+
+        Raises
+        ------
+        InputError
+            What a file, a data sheet or a method refuses.
+        """
+        scenario = build_scenario(self.scenario)
+        made = setup(scenario, imu=self.sheet, methods=self.methods, without=self.without)
+        pdr = reckoning_params(made.pdr, self.detector, self.pdr)
+        guided = _about("filter", made.guided, self.guided)
+        overridden(draw_unit(made.spec, 0), self.unit)  # refused here, not in every trial
+        return replace(made, pdr=pdr, guided=guided, unit=dict(self.unit))
+
+
+def documents(
+    scenario: str,
+    *,
+    imu: str | None = None,
+    methods: Iterable[Any] = DEFAULT_METHODS,
+    without: Iterable[str] = (),
+) -> Documents:
+    """The documents of a scenario by its name or file; its own sheet unless told otherwise.
+
+    Raises
+    ------
+    InputError
+        What cannot be read or found.
+    """
+    read = read_document(scenario)
+    sheet = read_sheet(imu) if imu is not None else read_sheet(build_scenario(read).imu)
+    return Documents(read, sheet, find(methods), without=tuple(without))
+
+
+def parsed(settings: Iterable[str]) -> dict[str, Any]:
+    """`ADDRESS=VALUE` texts as address -> value; a value is written as in TOML, text may go without quotes.
+
+    Raises
+    ------
+    InputError
+        No "=", or an address twice.
+    """
+    found: dict[str, Any] = {}
+    for setting in settings:
+        # An "=" in brackets chooses an element.
+        match = re.fullmatch(r"((?:[^=\[]|\[[^\]]*\])+)=(.*)", setting, flags=re.DOTALL)
+        if match is None:
+            raise InputError(f"--set {setting}: expected ADDRESS=VALUE (see `footfall parameters`)")
+        address, text = match[1].strip(), match[2].strip()
+        if address in found:
+            raise InputError(f"--set {address}: given twice")
+        try:
+            found[address] = tomllib.loads(f"value = {text}")["value"]
+        except tomllib.TOMLDecodeError:
+            found[address] = text
+    return found
+
+
+def with_values(base: Documents, values: Mapping[str, Any]) -> Documents:
+    """The documents with other values, by address, in their order.
+
+    Raises
+    ------
+    InputError
+        No such address, with the nearest one. What a value itself breaks is refused by `Documents.setup`,
+        or here where the settings of a method are concerned.
+    """
+    for address, value in values.items():
+        area, _, path = address.partition(".")
+        own = {method.name for method in base.methods}
+        if area in own:
+            # A method of this name may be renamed: `base.methods` decides.
+            base = replace(base, methods=tuple(_told(method, area, path, value) for method in base.methods))
+        elif area in _AREAS:
+            base = _AREAS[area](base, address, path, value)
+        elif area in METHODS:
+            raise InputError(f"{address}: method {area!r} is not among {', '.join(sorted(own))}")
+        else:
+            raise InputError(f"{address}: unknown area{did_you_mean(area, [*_AREAS, *sorted(own)])}")
+    return base
+
+
+def _told(method: Method, area: str, path: str, value: Any) -> Method:
+    if method.name != area:
+        return method
+    try:
+        return method.with_params({path: value})
+    except InputError as error:
+        raise InputError(f"{area}.{error}") from None
+
+
+def _scenario(base: Documents, address: str, path: str, value: Any) -> Documents:
+    _require_known(address, [f"scenario.{key.address}" for key in keys(ScenarioFile)])
+    if address == "scenario.sensor.imu":
+        raise InputError("scenario.sensor.imu: set imu, or the option --imu")
+    table = _opened_subjects(base.scenario.table, path)
+    return replace(base, scenario=replace(base.scenario, table=edited(table, path, value)))
+
+
+def _opened_subjects(table: Mapping[str, Any], path: str) -> Mapping[str, Any]:
+    """A stock subject's name becomes a table before something in it is set."""
+    first, *rest = parse(path)
+    subjects = table.get("subjects")
+    if first.name != "subjects" or not rest or not isinstance(subjects, list):
+        return table
+    return {**table, "subjects": [_as_table(entry) for entry in subjects]}
+
+
+def _as_table(entry: Any) -> Any:
+    if not isinstance(entry, str) or entry not in SUBJECTS:
+        return entry
+    subject = SUBJECTS[entry]
+    shoe = next(name for name, sole in SHOES.items() if sole == subject.sole_time_s)
+    known = [name for name in SubjectTable.model_fields if name != "shoe"]
+    return {name: getattr(subject, name) for name in known} | {"shoe": shoe}
+
+
+def _imu(base: Documents, address: str, path: str, value: Any) -> Documents:
+    if not path:
+        return replace(base, sheet=read_sheet(str(value)))
+    known = [f"imu.{key.address}" for key in keys(ImuSheet)]
+    if address not in known:
+        one = f"unit.{path}" if path in CONSTANTS else None
+        spread = next((name for name in known if name.replace("_sigma", "") == address), None)
+        if one and spread:
+            raise InputError(
+                f"{address}: unknown; did you mean {spread} (of the sheet) or {one} (of one unit)?"
+            )
+        _require_known(address, known)
+    return replace(base, sheet=replace(base.sheet, table=edited(base.sheet.table, path, value)))
+
+
+def _unit(base: Documents, address: str, path: str, value: Any) -> Documents:
+    _require_known(address, [f"unit.{name}" for name in CONSTANTS])
+    return replace(base, unit={**base.unit, path: value})
+
+
+def _pdr(base: Documents, address: str, path: str, value: Any) -> Documents:
+    if path == "detector":
+        return replace(base, detector=str(value))
+    detector = require_detector(base.detector) if base.detector else PdrParams().detector
+    _require_known(address, [f"pdr.{leaf.name}" for leaf in leaves(PdrParams(detector=detector))])
+    return replace(base, pdr={**base.pdr, path: value})
+
+
+def _filter(base: Documents, address: str, path: str, value: Any) -> Documents:
+    _require_known(address, [f"filter.{leaf.name}" for leaf in leaves(FilterSettings())])
+    return replace(base, guided={**base.guided, path: value})
+
+
+_AREAS = {"scenario": _scenario, "imu": _imu, "unit": _unit, "pdr": _pdr, "filter": _filter}
+
+
+def reckoning_params(base: PdrParams, detector: str | None, values: Mapping[str, Any]) -> PdrParams:
+    """Dead reckoning's settings with another detector and other values, by their edge names.
+
+    Raises
+    ------
+    InputError
+        No such detector or setting, or a value that it refuses.
+    """
+    chosen = base if detector is None else replace(base, detector=require_detector(detector))
+    return _about("pdr", chosen, values)
+
+
+def _about(area: str, base: Any, values: Mapping[str, Any]) -> Any:
+    try:
+        return changed(base, values)
+    except InputError as error:
+        raise InputError(f"{area}.{error}") from None
+
+
+def _require_known(address: str, known: Iterable[str]) -> None:
+    parse(address)
+    patterns = {pattern(one) for one in known}
+    if pattern(address) not in patterns:
+        raise InputError(f"{address}: unknown{did_you_mean(pattern(address), sorted(patterns))}")
+
+
+def parameters(base: Documents) -> Iterator[Parameter]:
+    """Every address with what stands there now."""
+    for key in keys(ScenarioFile):
+        address = f"scenario.{key.address}"
+        if address in _NO_PARAMETERS:
+            continue
+        stage = next((stage for head, stage in _LATER.items() if address.startswith(head)), "walk")
+        now = _now(base.scenario.table, key.address, key.default)
+        yield Parameter(address, key.type, _unit_of(address), now, key.bounds, stage)
+    for key in keys(ImuSheet):
+        address = f"imu.{key.address}"
+        if address not in _NO_PARAMETERS:
+            now = _now(base.sheet.table, key.address, key.default)
+            yield Parameter(address, key.type, _unit_of(address), now, key.bounds, "record")
+    for name, constant in CONSTANTS.items():
+        kind = "list of 3 numbers" if len(constant.shape) == 1 else "list of 3 rows of 3 numbers"
+        yield Parameter(f"unit.{name}", kind, _unit_of(name), "drawn", "", "record")
+    pdr = reckoning_params(PdrParams(), base.detector, base.pdr)
+    yield Parameter("pdr.detector", " or ".join(DETECTORS), "", base.detector or "threshold", "", "reckon")
+    yield from _settings("pdr", pdr, "reckon")
+    yield from _settings("filter", _about("filter", FilterSettings(), base.guided), "track")
+    for method in base.methods:
+        if method.params is not None:
+            yield from _settings(method.name, method.params, "track")
+
+
+def _settings(area: str, params: Any, stage: str) -> Iterator[Parameter]:
+    for leaf in leaves(params):
+        bounds = {">=": leaf.ge, ">": leaf.gt, "<=": leaf.le, "<": leaf.lt}
+        said = ", ".join(f"{sign} {value:g}" for sign, value in bounds.items() if value is not None)
+        yield Parameter(f"{area}.{leaf.name}", kind_of(leaf.type), leaf.unit, leaf.value, said, stage)
+
+
+def _unit_of(address: str) -> str:
+    name = address.rsplit(".", 1)[-1]
+    return next((unit for ending, unit in _ENDINGS.items() if name.endswith(ending)), "")
+
+
+def _now(table: Mapping[str, Any], address: str, default: Any) -> Any:
+    """What a document holds at an address; the different values where that is several, else the default."""
+    found: list[Any] = [table]
+    for part in parse(address):
+        below = []
+        for one in found:
+            if isinstance(one, str) and one in SUBJECTS:
+                one = _as_table(one)
+            if isinstance(one, dict) and part.name in one:
+                value = one[part.name]
+                if part.which is None:
+                    below += value if isinstance(value, list) and _tables(value) else [value]
+                else:
+                    key, _, text = part.which.partition("=")
+                    entries = value if isinstance(value, list) else [value]
+                    below += [e for e in entries if not text or (isinstance(e, dict) and e.get(key) == text)]
+        found = below
+    if not found or found == [table]:
+        return default
+    different = [one for i, one in enumerate(found) if one not in found[:i]]
+    return different[0] if len(different) == 1 else different
+
+
+def _tables(values: list[Any]) -> bool:
+    return bool(values) and all(isinstance(value, dict) for value in values)
