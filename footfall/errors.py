@@ -1,9 +1,43 @@
 """The one exception that a user's mistake raises."""
 
+from __future__ import annotations
+
+import os
+from typing import Self
+
 
 class InputError(ValueError):
     """Something from outside (file, key, argument, recording) cannot be used.
 
-    Its message is one sentence that names the culprit, its value and what was expected;
+    Its text, "subject: message", is one sentence that names the culprit, its value and what was expected;
     the command line prints it and exits with code 2.
+
+    Parameters
+    ----------
+    message : what is wrong, and what was expected
+    subject : the culprit; None where the message names it
+
+    Attributes
+    ----------
+    message, subject : as given, the subject as text
     """
+
+    def __init__(self, message: str, subject: str | os.PathLike[str] | None = None) -> None:
+        self.message = message
+        self.subject = None if subject is None else os.fspath(subject)
+        super().__init__(message, self.subject)  # with these, a process hands it to another
+
+    def __str__(self) -> str:
+        return self.message if self.subject is None else f"{self.subject}: {self.message}"
+
+    def about(self, subject: str | os.PathLike[str], *instead_of: str) -> Self:
+        """The same mistake, said of a culprit that only the caller knows.
+
+        Parameters
+        ----------
+        subject : put in front of the sentence, where it is not there yet
+        instead_of : stand-ins, such as "recording": a subject of such a name makes way
+        """
+        subject = os.fspath(subject)
+        known = self.subject in (subject, *instead_of)
+        return type(self)(self.message if known else str(self), subject)

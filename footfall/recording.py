@@ -54,23 +54,23 @@ class Recording:
     def __post_init__(self) -> None:
         n = len(self.t)
         if n < 2:
-            raise InputError(f"recording: {n} samples, expected at least 2")
+            raise InputError(f"{n} samples, expected at least 2", "recording")
         for name in ("gyro", "accel"):
             if getattr(self, name).shape != (n, 3):
                 raise InputError(
-                    f"recording: {name} has shape {getattr(self, name).shape}, expected ({n}, 3)"
+                    f"{name} has shape {getattr(self, name).shape}, expected ({n}, 3)", "recording"
                 )
         if self.temperature is not None and self.temperature.shape != (n,):
-            raise InputError(f"recording: temperature has shape {self.temperature.shape}, expected ({n},)")
+            raise InputError(f"temperature has shape {self.temperature.shape}, expected ({n},)", "recording")
         for name in ("t", "gyro", "accel", "temperature"):
             values = getattr(self, name)
             if values is not None and not np.isfinite(values).all():
                 row = int(np.argwhere(~np.isfinite(values))[0][0])
-                raise InputError(f"recording: {name} is not finite at row {row}")
+                raise InputError(f"{name} is not finite at row {row}", "recording")
         step = np.diff(self.t)
         if (step <= 0).any():
             row = int(np.argmax(step <= 0)) + 1
-            raise InputError(f"recording: t does not increase at row {row} (t = {self.t[row]:.6g} s)")
+            raise InputError(f"t does not increase at row {row} (t = {self.t[row]:.6g} s)", "recording")
 
     @property
     def interval(self) -> float:
@@ -97,8 +97,9 @@ def refuse_truth(path: str | os.PathLike[str], names: Iterable[str]) -> None:
     """Raise InputError where columns of these names are a walk's truth, which no IMU ever recorded."""
     if is_truth(names):
         raise InputError(
-            f"{path}: is the truth of a walk, expected what an IMU recorded of it: first "
-            f"`footfall record {path} --imu perfect -o FILE` (or another IMU)"
+            "is the truth of a walk, expected what an IMU recorded of it: first "
+            f"`footfall record {path} --imu perfect -o FILE` (or another IMU)",
+            path,
         )
 
 
@@ -123,4 +124,4 @@ def read_recording(path: str | os.PathLike[str]) -> Recording:
             meta=meta,
         )
     except InputError as error:
-        raise InputError(f"{path}: {str(error).removeprefix('recording: ')}") from None
+        raise error.about(path, "recording") from None

@@ -50,7 +50,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         finally:
             temporary.unlink(missing_ok=True)
     except OSError as error:
-        raise InputError(f"{target}: cannot be written ({error.strerror or error})") from None
+        raise InputError(f"cannot be written ({error.strerror or error})", target) from None
 
 
 def write_table(
@@ -85,7 +85,7 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
     """
     source = Path(path)
     if not source.is_file():
-        raise InputError(f"{source}: no such file")
+        raise InputError("no such file", source)
     kind = "CSV" if source.suffix.lower() == ".csv" else "Parquet"
     try:
         # A folder named like `seed=3` is no partition, and adds no column.
@@ -93,14 +93,14 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
         names = table.column_names
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         reason = str(error).splitlines()[0]
-        raise InputError(f"{source}: not a readable {kind} file ({reason})") from None
+        raise InputError(f"not a readable {kind} file ({reason})", source) from None
     columns: dict[str, np.ndarray] = {}
     for name, column in zip(names, table.columns, strict=True):
         holds = column.type
         if name in columns:
-            raise InputError(f"{source}: two columns are called {name!r}")
+            raise InputError(f"two columns are called {name!r}", source)
         if not (pa.types.is_floating(holds) or pa.types.is_integer(holds) or pa.types.is_boolean(holds)):
-            raise InputError(f"{source}: column {name!r} holds {holds}, expected numbers")
+            raise InputError(f"column {name!r} holds {holds}, expected numbers", source)
         # Nulls become NaN, which each reader judges. A copy: Arrow's memory may be read-only, for which
         # compiled kernels would have to be compiled once more.
         values = column.to_numpy(zero_copy_only=False)
@@ -114,7 +114,7 @@ def _meta(source: Path, table: pa.Table) -> dict[str, Any]:
     except ValueError:
         meta = None
     if not isinstance(meta, dict):
-        raise InputError(f"{source}: its metadata {META_KEY.decode()!r} is not a JSON object")
+        raise InputError(f"its metadata {META_KEY.decode()!r} is not a JSON object", source)
     return meta
 
 
@@ -122,4 +122,4 @@ def require_columns(source: str, columns: Columns, names: tuple[str, ...]) -> No
     """Raise InputError when any of `names` is missing."""
     missing = [name for name in names if name not in columns]
     if missing:
-        raise InputError(f"{source}: column {missing[0]!r} is missing (expected {', '.join(names)})")
+        raise InputError(f"column {missing[0]!r} is missing (expected {', '.join(names)})", source)

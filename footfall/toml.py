@@ -45,11 +45,11 @@ def parse_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
     try:
         return tomllib.loads(source.read_text(encoding="utf-8"))
     except OSError as error:
-        raise InputError(f"{source}: cannot be read ({error.strerror})") from None
+        raise InputError(f"cannot be read ({error.strerror})", source) from None
     except UnicodeDecodeError as error:
-        raise InputError(f"{source}: not UTF-8 text ({error.reason})") from None
+        raise InputError(f"not UTF-8 text ({error.reason})", source) from None
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{source}: not valid TOML ({error})") from None
+        raise InputError(f"not valid TOML ({error})", source) from None
 
 
 def checked(table: Mapping[str, Any], model: type[Model], source: str) -> Model:
@@ -66,13 +66,13 @@ def checked(table: Mapping[str, Any], model: type[Model], source: str) -> Model:
         first = error.errors()[0]
         key = ".".join(_written(table, first["loc"]))
         if first["type"] == "extra_forbidden":
-            raise InputError(f"{source}: unknown key {key!r} = {first['input']!r}") from None
+            raise InputError(f"unknown key {key!r} = {first['input']!r}", source) from None
         if first["type"] == "missing":
-            raise InputError(f"{source}: key {key!r} is missing") from None
+            raise InputError(f"key {key!r} is missing", source) from None
         # A whole table is no help; the message of a model's own check says what is wrong with it.
         value = "" if isinstance(first["input"], dict | list) else f" = {first['input']!r}"
-        reason = first["msg"].removeprefix("Value error, ")
-        raise InputError(f"{source}: {key}{value}: {reason}" if key else f"{source}: {reason}") from None
+        reason = first["msg"] if "error" not in first.get("ctx", {}) else str(first["ctx"]["error"])
+        raise InputError(f"{key}{value}: {reason}" if key else reason, source) from None
 
 
 def _written(content: object, location: Sequence[int | str]) -> Iterator[str]:

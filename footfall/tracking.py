@@ -88,7 +88,6 @@ def track_file(
             track = METHODS[method].run(StreamedReckoning(run_through, start, counted))
             findings = blocks.findings
     except InputError as error:
-        sentence = str(error).removeprefix("recording: ").removeprefix(f"{path}: ")
-        raise InputError(f"{path}: {sentence}") from None
+        raise error.about(path, "recording") from None
     origin = {**source.meta, "read": findings.as_dict()}
     return Tracked(told(track, origin, replace(params, bias_s=used), start), findings, used)

@@ -46,6 +46,7 @@ class StreamedReckoning(Reckoning):
             Always.
         """
         raise InputError(
-            "recording: too long to be held at once, which this method needs: "
-            "cut it, or choose a method on footfalls (pdr, hdr, hdr-basic, hde-2010)"
+            "too long to be held at once, which this method needs: "
+            "cut it, or choose a method on footfalls (pdr, hdr, hdr-basic, hde-2010)",
+            "recording",
         )

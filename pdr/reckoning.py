@@ -78,9 +78,9 @@ class PdrParams:
 
     def __post_init__(self) -> None:
         if not 0 < self.bias_s < math.inf:
-            raise InputError(f"pdr: bias_s = {self.bias_s}, expected a positive number of seconds")
+            raise InputError(f"bias_s = {self.bias_s}, expected a positive number of seconds", "pdr")
         if not 0 <= self.tilt_gain <= 1:
-            raise InputError(f"pdr: tilt_gain = {self.tilt_gain}, expected 0 to 1")
+            raise InputError(f"tilt_gain = {self.tilt_gain}, expected 0 to 1", "pdr")
 
 
 @dataclass(frozen=True)
@@ -126,13 +126,13 @@ def static_bias(recording: Recording, bias_s: float) -> Rest:
     t = recording.t - recording.t[0]
     if t[-1] < bias_s - 1e-6:
         raise InputError(
-            f"recording: lasts {t[-1]:.4g} s, shorter than the {bias_s:g} s at rest for the static bias"
+            f"lasts {t[-1]:.4g} s, shorter than the {bias_s:g} s at rest for the static bias", "recording"
         )
     last = int(np.searchsorted(t, bias_s + 1e-6)) - 1
     # Row 0 is the start: its sample belongs to time before the record.
     gyro, accel = recording.gyro[1 : last + 1], recording.accel[1 : last + 1]
     if len(gyro) == 0:
-        raise InputError(f"recording: no sample within the first {bias_s:g} s")
+        raise InputError(f"no sample within the first {bias_s:g} s", "recording")
     # Means of half a second: sensor noise averages out, a foot that is put down does not.
     block = np.minimum(t[1 : last + 1] // REST_BLOCK_S, max(int(bias_s / REST_BLOCK_S) - 1, 0)).astype(int)
     used, first, count = np.unique(block, return_index=True, return_counts=True)
@@ -142,14 +142,16 @@ def static_bias(recording: Recording, bias_s: float) -> Rest:
         if moved.any():
             when = used[np.argmax(moved)] * REST_BLOCK_S
             raise InputError(
-                f"recording: the IMU moves at t = {when:g} s ({name}), "
-                f"but the static bias needs the first {bias_s:g} s at rest"
+                f"the IMU moves at t = {when:g} s ({name}), "
+                f"but the static bias needs the first {bias_s:g} s at rest",
+                "recording",
             )
     rest = Rest(gyro_bias=gyro.mean(axis=0), force=accel.mean(axis=0), last=last)
     if abs(np.linalg.norm(rest.force) - GRAVITY) > REST_GRAVITY:
         raise InputError(
-            f"recording: the accelerometers measure {np.linalg.norm(rest.force):.3g} at rest, "
-            f"expected {GRAVITY:.3g} +- {REST_GRAVITY:g} m/s2"
+            f"the accelerometers measure {np.linalg.norm(rest.force):.3g} at rest, "
+            f"expected {GRAVITY:.3g} +- {REST_GRAVITY:g} m/s2",
+            "recording",
         )
     return rest
 
@@ -167,8 +169,9 @@ def level_attitude(force: np.ndarray) -> np.ndarray:
     level = float(np.linalg.norm(forward))
     if level < MIN_LEVEL:
         raise InputError(
-            f"recording: at rest the IMU's x axis is {math.degrees(math.asin(level)):.1f} deg from vertical, "
-            f"expected at least {math.degrees(math.asin(MIN_LEVEL)):.0f} deg, or it has no heading"
+            f"at rest the IMU's x axis is {math.degrees(math.asin(level)):.1f} deg from vertical, "
+            f"expected at least {math.degrees(math.asin(MIN_LEVEL)):.0f} deg, or it has no heading",
+            "recording",
         )
     forward /= level
     rotation = Rotation.from_matrix(np.array([forward, np.cross(up, forward), up]))
@@ -257,7 +260,7 @@ def detect(recording: Recording, params: PdrParams) -> Detected:
     score = np.where(np.arange(len(t)) < rest.last, np.minimum(score, 0.5), score)
     stances = _stances_after(rest, find_stances(t, score, params.stance))
     if len(stances.footfalls) < 2:
-        raise InputError(f"recording: no stride found after the {params.bias_s:g} s at rest")
+        raise InputError(f"no stride found after the {params.bias_s:g} s at rest", "recording")
     refuse_gaps(recording.t, int(stances.resets[0]), int(stances.resets[-1]), params.max_gap_s)
     return Detected(rest=rest, score=np.concatenate([score[:1], score]), stances=stances)
 
@@ -279,6 +282,7 @@ def refuse_gaps(t: np.ndarray, first: int, last: int, max_gap_s: float) -> None:
     worst = int(np.argmax(step))
     if step[worst] > max_gap_s:
         raise InputError(
-            f"recording: no samples for {step[worst]:.3g} s after t = {t[first + worst]:.6g} s, "
-            f"dead reckoning bridges at most {max_gap_s:g} s"
+            f"no samples for {step[worst]:.3g} s after t = {t[first + worst]:.6g} s, "
+            f"dead reckoning bridges at most {max_gap_s:g} s",
+            "recording",
         )

@@ -45,6 +45,6 @@ def still_time(recording: Recording, most_s: float = 25.0) -> float:
             break
     if whole < REST_BLOCK_S:
         raise InputError(
-            f"recording: the IMU moves from the start, but dead reckoning needs {REST_BLOCK_S:g} s at rest"
+            f"the IMU moves from the start, but dead reckoning needs {REST_BLOCK_S:g} s at rest", "recording"
         )
     return whole

@@ -69,7 +69,7 @@ def dead_reckon_blocks(
             held = walker.take(held, last=False)
     walker.take(held, last=True)
     if len(walker.t) < 2:
-        raise InputError(f"recording: no stride found after the {params.bias_s:g} s at rest")
+        raise InputError(f"no stride found after the {params.bias_s:g} s at rest", "recording")
     footfalls = placed(np.array(walker.t), np.array(walker.quaternions), np.array(walker.positions), start)
     return footfalls, params.bias_s
 
@@ -77,7 +77,7 @@ def dead_reckon_blocks(
 def _beginning(waiting: Iterator[Recording], bias_s: float) -> Recording:
     held = next(waiting, None)
     if held is None:
-        raise InputError("recording: no rows of samples")
+        raise InputError("no rows of samples", "recording")
     while held.t[-1] - held.t[0] < bias_s + SETTLED_S:
         block = next(waiting, None)
         if block is None:
@@ -129,7 +129,7 @@ class _Walker:
             if stop is None:
                 if len(t) > MOST_ROWS:
                     raise InputError(
-                        f"recording: no stance in the {t[-1] - t[carry]:.4g} s after t = {t[carry]:.6g} s"
+                        f"no stance in the {t[-1] - t[carry]:.4g} s after t = {t[carry]:.6g} s", "recording"
                     )
                 return held
             known = int(np.searchsorted(resets, stop, side="right"))

@@ -60,10 +60,10 @@ def read_track(path: str | os.PathLike[str]) -> Track:
     for name in UNITS:
         if not np.isfinite(columns[name]).all():
             row = int(np.argmin(np.isfinite(columns[name])))
-            raise InputError(f"{path}: {name} is not finite at row {row}")
+            raise InputError(f"{name} is not finite at row {row}", path)
     t = np.asarray(columns["t"], dtype=float)
     if len(t) < 2 or (np.diff(t) <= 0).any():
-        raise InputError(f"{path}: a track needs at least two rows with increasing t")
+        raise InputError("a track needs at least two rows with increasing t", path)
     evidence = {name: values for name, values in columns.items() if name not in UNITS}
     return Track(
         t=t,

@@ -283,7 +283,7 @@ def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
     try:
         return _scenario(file, content)
     except InputError as error:
-        raise InputError(f"{file}: {error}") from None
+        raise error.about(file) from None
 
 
 def _scenario(file: File, content: ScenarioFile) -> Scenario:
@@ -295,7 +295,7 @@ def _scenario(file: File, content: ScenarioFile) -> Scenario:
     try:
         divisor(PHYSICS_STEP, sensor.rate_hz)
     except InputError as error:
-        raise InputError(f"sensor.rate_hz: {error}") from None
+        raise error.about("sensor.rate_hz") from None
     imu = sensor.imu if sensor.imu in stock_specs() else str(file.parent / sensor.imu)
     load_spec(imu)
     return Scenario(

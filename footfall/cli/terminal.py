@@ -47,7 +47,7 @@ def blaming(file: Path | str, part: str = "recording") -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        raise InputError(f"{file}: {str(error).removeprefix(f'{part}: ')}") from None
+        raise error.about(file, part) from None
 
 
 def require_output(file: Path, ending: str | tuple[str, ...], *inputs: Path) -> None:
@@ -60,16 +60,16 @@ def require_output(file: Path, ending: str | tuple[str, ...], *inputs: Path) -> 
     """
     endings = (ending,) if isinstance(ending, str) else ending
     if file.suffix.lower() not in endings:
-        raise InputError(f"{file}: expected a name that ends in {' or '.join(endings)}")
+        raise InputError(f"expected a name that ends in {' or '.join(endings)}", file)
     if file.is_dir():
-        raise InputError(f"{file}: a folder, expected a file to write")
+        raise InputError("a folder, expected a file to write", file)
     if not file.parent.is_dir():
-        raise InputError(f"{file}: the folder {file.parent} does not exist")
+        raise InputError(f"the folder {file.parent} does not exist", file)
     if not os.access(file.parent, os.W_OK):
-        raise InputError(f"{file}: the folder {file.parent} cannot be written")
+        raise InputError(f"the folder {file.parent} cannot be written", file)
     for source in inputs:
         if file.exists() and source.exists() and file.samefile(source):
-            raise InputError(f"{file}: would overwrite what it is made from")
+            raise InputError("would overwrite what it is made from", file)
 
 
 def perform(app: typer.Typer, arguments: list[str] | None) -> int:

@@ -98,7 +98,7 @@ def condition(samples: Samples, format: str, *, whole: bool = True) -> tuple[Sam
     samples, doubled = _without_doubled(samples)
     samples = replace(samples, t=_spread(samples.t))
     if len(samples) < 2:
-        raise InputError(f"recording: {len(samples)} samples, expected at least 2")
+        raise InputError(f"{len(samples)} samples, expected at least 2", "recording")
     step = np.diff(samples.t)
     interval = float(np.median(step))
     low, high = np.percentile(step, [16, 84])
@@ -139,12 +139,12 @@ def _without_empty(samples: Samples) -> tuple[Samples, int]:
         row = int(np.argmax(bad)) if bad.any() else 0
         axis = int(np.argmin(finite[row])) if not finite[row].all() else -1
         name = "t" if axis < 0 else ("gyro" if axis < 3 else "accel")
-        raise InputError(f"recording: {name} is not finite at row {samples.row + row}")
+        raise InputError(f"{name} is not finite at row {samples.row + row}", "recording")
     samples = samples.take(~empty) if empty.any() else samples
     for name, largest in LARGEST.items():
         size = np.abs(getattr(samples, name)).reshape(len(samples), -1).max(axis=1)
         if size.max() > largest:
-            raise InputError(f"recording: {name} is {size.max():.3g} somewhere, which no sensor says")
+            raise InputError(f"{name} is {size.max():.3g} somewhere, which no sensor says", "recording")
     return samples, int(empty.sum())
 
 
@@ -153,7 +153,7 @@ def _without_doubled(samples: Samples) -> tuple[Samples, int]:
     if (step < 0).any():
         row = int(np.argmax(step < 0)) + 1
         raise InputError(
-            f"recording: t does not increase at row {samples.row + row} (t = {samples.t[row]:.6g} s)"
+            f"t does not increase at row {samples.row + row} (t = {samples.t[row]:.6g} s)", "recording"
         )
     shared = np.flatnonzero(step == 0) + 1
     same = shared
@@ -170,7 +170,7 @@ def _spread(t: np.ndarray) -> np.ndarray:
     first = np.flatnonzero(np.diff(t, prepend=-np.inf) > 0)
     if len(first) == len(t) or len(first) < 2:
         if len(first) < 2 <= len(t):
-            raise InputError(f"recording: every row has the same time, t = {t[0]:.6g} s")
+            raise InputError(f"every row has the same time, t = {t[0]:.6g} s", "recording")
         return t
     # The last stamp's samples follow each other as those before did.
     interval = (t[first[-1]] - t[first[0]]) / (first[-1] - first[0])

@@ -33,21 +33,21 @@ def open_matlab(path: Path, sizes: Mapping[str, float]) -> Source:
     try:
         held = [name for name, _, _ in whosmat(path)]
         if not {"imu", "ts"} <= set(held):
-            raise InputError(f"{path}: no variables 'imu' and 'ts' (it holds {', '.join(held) or 'nothing'})")
+            raise InputError(f"no variables 'imu' and 'ts' (it holds {', '.join(held) or 'nothing'})", path)
         found = loadmat(path, variable_names=["imu", "ts"])
     except NotImplementedError:
-        raise InputError(f"{path}: MATLAB version 7.3, expected version 7 (save with '-v7')") from None
+        raise InputError("MATLAB version 7.3, expected version 7 (save with '-v7')", path) from None
     except InputError:
         raise
     except Exception as error:  # scipy raises whatever a damaged file makes it stumble over
-        raise InputError(f"{path}: not a readable MATLAB file ({error})") from None
+        raise InputError(f"not a readable MATLAB file ({error})", path) from None
     imu, ts = np.asarray(found["imu"]), np.asarray(found["ts"])
     if imu.ndim == 2 and imu.shape[1] != 6 and imu.shape[0] == 6:
         imu = imu.T
     if imu.ndim != 2 or imu.shape[1] != 6 or imu.dtype.kind not in "fiu":
-        raise InputError(f"{path}: imu is {imu.dtype} of shape {imu.shape}, expected numbers, n x 6")
+        raise InputError(f"imu is {imu.dtype} of shape {imu.shape}, expected numbers, n x 6", path)
     if ts.size not in (1, len(imu)) or ts.dtype.kind not in "fiu":
-        raise InputError(f"{path}: ts has {ts.size} values for {len(imu)} samples, expected one each")
+        raise InputError(f"ts has {ts.size} values for {len(imu)} samples, expected one each", path)
     t = ts.ravel().astype(float) if ts.size == len(imu) else np.arange(len(imu)) * float(ts.item())
     samples = Samples(
         row=0,

@@ -71,7 +71,7 @@ def _numbers(path: Path, lines: list[str], row: int, last: bool) -> np.ndarray:
                     float(fields[place])
                 except (ValueError, IndexError):
                     raise InputError(
-                        f"{path}: {name} is no number in row {row + offset} ({line.strip()[:40]!r})"
+                        f"{name} is no number in row {row + offset} ({line.strip()[:40]!r})", path
                     ) from None
         raise
 
@@ -80,5 +80,5 @@ def _interval(path: Path, counter: np.ndarray) -> float:
     step = np.diff(counter)
     step = step[step > 0]  # the timer starts anew every second
     if not len(step):
-        raise InputError(f"{path}: Counter never increases")
+        raise InputError("Counter never increases", path)
     return float(np.median(step)) / TICKS

@@ -44,7 +44,7 @@ def check_alive(recording: Recording) -> None:
     """
     for what, values in (("gyros", recording.gyro), ("accelerometers", recording.accel)):
         if len(values) > 10 and (values == values[0]).all():
-            raise InputError(f"recording: the {what} say the same in every row: they recorded nothing")
+            raise InputError(f"the {what} say the same in every row: they recorded nothing", "recording")
 
 
 def check_values(recording: Recording, clipped: Mapping[str, int]) -> None:
@@ -58,14 +58,14 @@ def check_values(recording: Recording, clipped: Mapping[str, int]) -> None:
     for name, count in clipped.items():
         if count > MOST_CLIPPED * len(recording.t):
             raise InputError(
-                f"recording: {name} is at the end of its range in {count} of {len(recording.t)} samples"
+                f"{name} is at the end of its range in {count} of {len(recording.t)} samples", "recording"
             )
     interval = recording.interval
     if not 1e-5 <= interval <= 1.0:
         units = {1e-3: "ms", 1e-6: "us", 1e-9: "ns"}
         cause = next((unit for size, unit in units.items() if 1e-4 <= interval * size <= 0.1), None)
         guess = f": t is probably in {cause}" if cause else ""
-        raise InputError(f"recording: samples are {interval:.3g} s apart, expected 0.00001 to 1 s{guess}")
+        raise InputError(f"samples are {interval:.3g} s apart, expected 0.00001 to 1 s{guess}", "recording")
 
 
 def check_gravity(recording: Recording) -> None:
@@ -82,8 +82,9 @@ def check_gravity(recording: Recording) -> None:
     if abs(force - GRAVITY) > GRAVITY_TOLERANCE:
         cause = next((f": {text}" for size, text in _FORCES if abs(force - size) <= 0.1 * max(size, 1)), "")
         raise InputError(
-            f"recording: the accelerometers measure {force:.3g} at rest, "
-            f"expected {GRAVITY:.3g} +- {GRAVITY_TOLERANCE:g} m/s2{cause}"
+            f"the accelerometers measure {force:.3g} at rest, "
+            f"expected {GRAVITY:.3g} +- {GRAVITY_TOLERANCE:g} m/s2{cause}",
+            "recording",
         )
 
 
@@ -104,7 +105,7 @@ def check_walk(recording: Recording) -> None:
     rate = 1 / recording.interval
     if not WALK_RATES[0] <= rate <= WALK_RATES[1]:
         raise InputError(
-            f"recording: sampled at {rate:.3g} Hz, a walking foot needs {WALK_RATES[0]:g} Hz or more"
+            f"sampled at {rate:.3g} Hz, a walking foot needs {WALK_RATES[0]:g} Hz or more", "recording"
         )
     spread = float(np.linalg.norm(recording.accel, axis=1).std())
     rms = math.sqrt(np.mean(recording.gyro**2) * 3)
@@ -113,8 +114,8 @@ def check_walk(recording: Recording) -> None:
     if not GYRO_RMS[0] <= rms <= GYRO_RMS[1]:
         cause = "deg/s" if rms > GYRO_RMS[1] else "rad/s, and were taken for deg/s"
         raise InputError(
-            f"recording: the gyros turn at {rms:.3g} rad/s RMS while the foot walks: "
-            f"they are probably in {cause}"
+            f"the gyros turn at {rms:.3g} rad/s RMS while the foot walks: they are probably in {cause}",
+            "recording",
         )
     rests = rests_of(recording)
     off = misclosure(recording, rests, np.eye(3))
@@ -123,11 +124,12 @@ def check_walk(recording: Recording) -> None:
     left = {cause: misclosure(recording, rests, change) or math.inf for cause, change in CHANGES.items()}
     likely = min(left, key=left.__getitem__)
     if left[likely] <= off / 2:
-        raise InputError(f"recording: turned by its gyros, gravity does not stay vertical: {likely}")
+        raise InputError(f"turned by its gyros, gravity does not stay vertical: {likely}", "recording")
     if off > MISCLOSURE[1]:
         raise InputError(
-            "recording: turned by its gyros, gravity does not stay vertical: "
-            "the gyros' unit or axes do not match the accelerometers'"
+            "turned by its gyros, gravity does not stay vertical: "
+            "the gyros' unit or axes do not match the accelerometers'",
+            "recording",
         )
 
 

@@ -49,14 +49,14 @@ def open_source(
     if rate_hz is not None and rate_hz <= 0:
         raise InputError(f"rate = {rate_hz:g} Hz: expected a positive number")
     if not source.is_file():
-        raise InputError(f"{source}: no such file")
+        raise InputError("no such file", source)
     with open(source, "rb") as file:
         head = file.read(_HEAD_BYTES)
     if not head:
-        raise InputError(f"{source}: empty")
+        raise InputError("empty", source)
     if format == "openshoe" or (format == "auto" and is_openshoe(head)):
         if not is_openshoe(head):
-            raise InputError(f"{source}: not a file of OpenShoe's recorder")
+            raise InputError("not a file of OpenShoe's recorder", source)
         return open_openshoe(source)
     if format == "matlab" or (format == "auto" and is_matlab(source, head)):
         return open_matlab(source, sizes)
@@ -90,15 +90,14 @@ def read(
     """
     source = open_source(path, format, sizes, rate_hz)
     if walk and source.rows > WHOLE_ROWS:
-        raise InputError(f"{path}: {source.rows} rows, expected at most {WHOLE_ROWS} to hold at once")
+        raise InputError(f"{source.rows} rows, expected at most {WHOLE_ROWS} to hold at once", path)
     try:
         samples, findings = condition(joined(source.blocks), source.format)
         findings = replace(findings, notes=tuple(source.notes))
         recording = as_recording(samples, source, findings)
         judge(recording, findings, walk)
     except InputError as error:
-        sentence = str(error).removeprefix("recording: ").removeprefix(f"{path}: ")
-        raise InputError(f"{path}: {sentence}") from None
+        raise error.about(path, "recording") from None
     return recording, findings
 
 
@@ -151,11 +150,10 @@ class Blocks:
                 seam = replace(samples.take(slice(-2, None)), row=row)
                 yield _bare(samples.take(slice(-2)), begin)
             if seam is None:
-                raise InputError("recording: no rows of samples")
+                raise InputError("no rows of samples", "recording")
             yield _bare(seam, begin)
         except InputError as error:
-            sentence = str(error).removeprefix("recording: ").removeprefix(f"{self.path}: ")
-            raise InputError(f"{self.path}: {sentence}") from None
+            raise error.about(self.path, "recording") from None
 
 
 def _bare(samples: Samples, begin: float) -> Recording:

@@ -71,7 +71,7 @@ def joined(blocks: Iterator[Samples]) -> Samples:
     """
     parts = [block for block in blocks if len(block)]
     if not parts:
-        raise InputError("recording: no rows of samples")
+        raise InputError("no rows of samples", "recording")
     if len(parts) == 1:
         return parts[0]
     warm = [part.temperature for part in parts if part.temperature is not None]

@@ -53,7 +53,7 @@ def open_table(
     refuse_truth(path, names)
     layout = _layout(path, names, name)
     if "t" not in layout.columns and rate_hz is None:
-        raise InputError(f"{path}: no column of time, and no rate (Hz) was given instead")
+        raise InputError("no column of time, and no rate (Hz) was given instead", path)
     wanted = [*layout.columns.values(), *layout.valid]
     notes: list[str] = []
     batches = _parquet(path, file, wanted) if parquet else _csv(path, delimiter, names, wanted, notes)
@@ -66,13 +66,13 @@ def _layout(path: Path, names: Sequence[str], name: str) -> Layout:
         if (found := layout(names)) is not None:
             twice = [column for column in found.columns.values() if names.count(column) > 1]
             if twice:
-                raise InputError(f"{path}: two columns are called {twice[0]!r}")
+                raise InputError(f"two columns are called {twice[0]!r}", path)
             return found
     if name in ("auto", "footfall"):
         lacking = next((column for column in ("t", *GYRO, *ACCEL) if column not in names), "t")
         wanted = ", ".join(("t", *GYRO, *ACCEL))
-        raise InputError(f"{path}: column {lacking!r} is missing (expected {wanted})")
-    raise InputError(f"{path}: not the columns of format {name!r} (found {', '.join(names[:8]) or 'none'})")
+        raise InputError(f"column {lacking!r} is missing (expected {wanted})", path)
+    raise InputError(f"not the columns of format {name!r} (found {', '.join(names[:8]) or 'none'})", path)
 
 
 def _samples(
@@ -144,16 +144,17 @@ def _csv(
     except pa.ArrowException as error:
         reason = str(error).splitlines()[0]
         if "Empty CSV" in reason:  # a header alone
-            raise InputError(f"{path}: no rows of samples") from None
+            raise InputError("no rows of samples", path) from None
         if match := re.search(r"CSV column #(\d+): .*invalid value '(.*)'", reason):
             name = names[int(match[1])]
-            raise InputError(f"{path}: column {name!r} holds {match[2]!r}, expected numbers") from None
-        raise InputError(f"{path}: not a readable CSV file ({reason})") from None
+            raise InputError(f"column {name!r} holds {match[2]!r}, expected numbers", path) from None
+        raise InputError(f"not a readable CSV file ({reason})", path) from None
     # A recorder that was switched off leaves half a line at the end; elsewhere the file is damaged.
     if torn and (len(torn) > 1 or not _ends_with(path, torn[0])):
         raise InputError(
-            f"{path}: {len(torn)} rows have another number of columns than the header's {len(names)}, "
-            f"the first is {torn[0][:60]!r}"
+            f"{len(torn)} rows have another number of columns than the header's {len(names)}, "
+            f"the first is {torn[0][:60]!r}",
+            path,
         )
     if torn:
         notes.append(TORN)
@@ -169,7 +170,7 @@ def _open_parquet(path: Path) -> tuple[Any, list[str]]:
     try:
         file = pq.ParquetFile(path)
     except (pa.ArrowException, OSError) as error:
-        raise InputError(f"{path}: not a readable Parquet file ({str(error).splitlines()[0]})") from None
+        raise InputError(f"not a readable Parquet file ({str(error).splitlines()[0]})", path) from None
     return file, list(file.schema_arrow.names)
 
 
@@ -177,12 +178,12 @@ def _parquet(path: Path, file: Any, wanted: Sequence[str]) -> Iterator[dict[str,
     for name in wanted:
         kind = file.schema_arrow.field(name).type
         if not (pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)):
-            raise InputError(f"{path}: column {name!r} holds {kind}, expected numbers")
+            raise InputError(f"column {name!r} holds {kind}, expected numbers", path)
     try:
         for batch in file.iter_batches(batch_size=BLOCK_ROWS, columns=list(wanted), use_threads=False):
             yield {name: _numbers(batch.column(name)) for name in wanted}
     except (pa.ArrowException, OSError) as error:
-        raise InputError(f"{path}: not a readable Parquet file ({str(error).splitlines()[0]})") from None
+        raise InputError(f"not a readable Parquet file ({str(error).splitlines()[0]})", path) from None
 
 
 def _numbers(column: Any) -> np.ndarray:
@@ -196,5 +197,5 @@ def _meta(path: Path, file: Any) -> dict[str, Any]:
     except ValueError:
         meta = None
     if not isinstance(meta, dict):
-        raise InputError(f"{path}: its metadata {META_KEY.decode()!r} is not a JSON object")
+        raise InputError(f"its metadata {META_KEY.decode()!r} is not a JSON object", path)
     return meta

@@ -243,4 +243,4 @@ def _triad(where: str, sheet: BaseModel, keys: _Keys) -> TriadSpec:
     try:
         return TriadSpec(**{keys[key][0]: keys[key][1] * value for key, value in given.items()})
     except InputError as error:
-        raise InputError(f"{where}: {error}") from None
+        raise error.about(where) from None

@@ -148,7 +148,7 @@ def score(track: Track, walk: Walk, align: Align = "none") -> Score:
         float(np.hypot(*np.diff(points, axis=0).T).sum()) for points in (row.truth, row.estimate)
     )
     if travelled == 0:
-        raise InputError("track: the truth does not move between its first and last row")
+        raise InputError("the truth does not move between its first and last row", "track")
     return Score(
         heading_error_mean_deg=float(error_deg.mean()),
         heading_error_final_deg=float(error_deg[-1]),
@@ -204,28 +204,30 @@ def require_scorable(track: Track, walk: Walk) -> None:
     """Raise InputError where a track cannot be judged against a walk."""
     made, own = WalkIdentity.of(track.meta), WalkIdentity.of(walk.meta)
     if made is not None and own is not None and made != own:
-        raise InputError(f"track: was made of the walk {made}, and cannot be judged against {own}")
+        raise InputError(f"was made of the walk {made}, and cannot be judged against {own}", "track")
     if len(track) < 2:
-        raise InputError(f"track: {len(track)} rows, expected at least 2")
+        raise InputError(f"{len(track)} rows, expected at least 2", "track")
     for name in ("t", "position", "heading"):
         values = getattr(track, name)
         if not np.isfinite(values).all():
             row = int(np.argwhere(~np.isfinite(values))[0][0])
-            raise InputError(f"track: {name} is not finite at row {row}")
+            raise InputError(f"{name} is not finite at row {row}", "track")
     step = np.diff(track.t)
     if (step <= 0).any():
-        raise InputError(f"track: t does not increase at row {int(np.argmax(step <= 0)) + 1}")
+        raise InputError(f"t does not increase at row {int(np.argmax(step <= 0)) + 1}", "track")
     begin, end = float(track.t[0]), float(track.t[-1])
     if begin < walk.t[0] - TIME_SLACK or end > walk.t[-1] + TIME_SLACK:
         raise InputError(
-            f"track: {begin:.2f} to {end:.2f} s lies outside the walk, which lasts from {walk.t[0]:.2f} "
-            f"to {walk.t[-1]:.2f} s"
+            f"{begin:.2f} to {end:.2f} s lies outside the walk, which lasts from {walk.t[0]:.2f} "
+            f"to {walk.t[-1]:.2f} s",
+            "track",
         )
     first, last = float(walk.footfalls.t[0]), float(walk.footfalls.t[-1])
     if begin > first + UNCOVERED or end < last - UNCOVERED:
         raise InputError(
-            f"track: {begin:.2f} to {end:.2f} s covers only a part of the walk, whose footfalls last from "
-            f"{first:.2f} to {last:.2f} s"
+            f"{begin:.2f} to {end:.2f} s covers only a part of the walk, whose footfalls last from "
+            f"{first:.2f} to {last:.2f} s",
+            "track",
         )
 
 
