@@ -52,7 +52,7 @@ class _Limits:
             if low is None:
                 return ""
             if low == 0:
-                return "0 or more" if self.gt is None else "more than 0"
+                return "0 or more" if self.gt is None else "positive"
             return f"at least {low:g}" if self.gt is None else f"more than {low:g}"
         if low is None:
             return f"at most {high:g}" if self.lt is None else f"less than {high:g}"
@@ -78,9 +78,11 @@ class Leaf(NamedTuple):
     @property
     def expected(self) -> str:
         """What may stand there, in words."""
-        words = _kind(self.type)
-        bounds = str(_Limits("", self.ge, self.gt, self.le, self.lt))
-        return words + (f", {bounds}" if bounds else "") + (f" ({self.unit})" if self.unit else "")
+        words, bounds = _kind(self.type), str(_Limits("", self.ge, self.gt, self.le, self.lt))
+        if bounds == "positive":
+            words, bounds = words.replace("number", "positive number"), ""
+        unit = _unnamed(self.name, self.unit)
+        return words + (f", {bounds}" if bounds else "") + (f" ({unit})" if unit else "")
 
 
 class _Place(NamedTuple):
@@ -126,9 +128,11 @@ def require(name: str, params: Any) -> None:
     for item in fields(params):
         limits, value = _limits(item), getattr(params, item.name)
         if not limits.admit(value):
-            unit = f" {limits.unit}" if limits.unit else ""
-            bounds = str(limits) or "a finite number"
-            raise InputError(f"{name}: {item.name} = {value}{unit}, expected {bounds}")
+            shown = f"{value} {_unnamed(item.name, limits.unit)}".rstrip()
+            bounds = str(limits) or "finite"
+            if bounds in ("positive", "finite"):
+                bounds = f"{bounds} numbers" if isinstance(value, tuple) else f"a {bounds} number"
+            raise InputError(f"{name}: {item.name} = {shown}, expected {bounds}")
 
 
 def leaves(params: Any) -> Iterator[Leaf]:
@@ -170,6 +174,11 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     if near:
         return f"; did you mean {' or '.join(near)}?"
     return f"; expected one of {', '.join(every)}" if every else "; there is nothing to set"
+
+
+def _unnamed(name: str, unit: str) -> str:
+    """The unit, unless the name ends with it."""
+    return "" if name.endswith("_" + unit.replace("/", "_")) else unit
 
 
 def _limits(item: Any) -> _Limits:

@@ -6,7 +6,7 @@ import cmath
 import math
 from dataclasses import dataclass
 
-from footfall.errors import InputError
+from footfall.settings import require, setting
 
 
 @dataclass(frozen=True)
@@ -23,20 +23,13 @@ class DirectionParams:
         spread evenly have 0, headings along the directions 1
     """
 
-    count: int = 4
-    reference: float | None = 0.0
-    learn_after: float = 5.0
-    learn_agreement: float = 0.7
+    count: int = setting(4, ge=1)
+    reference: float | None = setting(0.0, unit="rad")
+    learn_after: float = setting(5.0, gt=0)
+    learn_agreement: float = setting(0.7, ge=0, le=1)
 
     def __post_init__(self) -> None:
-        if self.count < 1:
-            raise InputError(f"directions: count = {self.count}, expected at least 1")
-        if self.reference is not None and not math.isfinite(self.reference):
-            raise InputError(f"directions: reference = {self.reference} rad, expected a finite angle or none")
-        if not 0 < self.learn_after < math.inf:
-            raise InputError(f"directions: learn_after = {self.learn_after}, expected a positive number")
-        if not 0 <= self.learn_agreement <= 1:
-            raise InputError(f"directions: learn_agreement = {self.learn_agreement}, expected 0 to 1")
+        require("directions", self)
 
 
 def deviation(heading: float, reference: float, count: int) -> float:

@@ -18,6 +18,7 @@ from footfall.hdr.directions import DirectionParams, Directions, deviation
 from footfall.hdr.step_heading import HeadingSource, StepHeadings, require_source
 from footfall.pdr.filter.run import Step
 from footfall.pdr.footfalls import Footfalls
+from footfall.settings import require, setting
 
 
 @dataclass(frozen=True)
@@ -33,15 +34,12 @@ class Hde2010Params:
     directions : the dominant directions, which must be given
     """
 
-    i_c: float = math.radians(0.3)
-    theta_w: float = math.radians(15.0)
+    i_c: float = setting(math.radians(0.3), unit="rad", ge=0)
+    theta_w: float = setting(math.radians(15.0), unit="rad/s", gt=0, le=math.inf)
     directions: DirectionParams = field(default_factory=DirectionParams)
 
     def __post_init__(self) -> None:
-        if not 0 <= self.i_c < math.inf:
-            raise InputError(f"hde-2010: i_c = {self.i_c} rad, expected 0 or more")
-        if not self.theta_w > 0:
-            raise InputError(f"hde-2010: theta_w = {self.theta_w} rad/s, expected a positive number")
+        require("hde-2010", self)
         if self.directions.reference is None:
             raise InputError("hde-2010: directions.reference is missing; only filters learn directions")
 
@@ -99,13 +97,12 @@ class HdeParams:
     """
 
     heading: HeadingSource = "course"
-    sigma: float = math.radians(12.0)
+    sigma: float = setting(math.radians(12.0), unit="rad", gt=0)
     directions: DirectionParams = field(default_factory=DirectionParams)
 
     def __post_init__(self) -> None:
         require_source("hde", self.heading)
-        if not 0 < self.sigma < math.inf:
-            raise InputError(f"hde: sigma = {self.sigma} rad, expected a positive number")
+        require("hde", self)
 
 
 class HdeRow(NamedTuple):

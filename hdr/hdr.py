@@ -17,6 +17,7 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.hdr import _kernels
 from footfall.pdr.footfalls import Footfalls
+from footfall.settings import require, setting
 
 
 @dataclass(frozen=True)
@@ -34,17 +35,12 @@ class HdrParams:
     theta_w : rad/s, rate above which the controller rests (Eq. 7); infinite for a controller that never does
     """
 
-    tau_s: float = 8.0
-    i_c: float = math.radians(0.007)
-    theta_w: float = math.radians(0.25)
+    tau_s: float = setting(8.0, unit="s", ge=0)
+    i_c: float = setting(math.radians(0.007), unit="rad/s", ge=0)
+    theta_w: float = setting(math.radians(0.25), unit="rad/s", gt=0, le=math.inf)
 
     def __post_init__(self) -> None:
-        if not 0 <= self.tau_s < math.inf:
-            raise InputError(f"hdr: tau_s = {self.tau_s}, expected a number of seconds, 0 or more")
-        if not 0 <= self.i_c < math.inf:
-            raise InputError(f"hdr: i_c = {self.i_c} rad/s, expected 0 or more")
-        if not self.theta_w > 0:
-            raise InputError(f"hdr: theta_w = {self.theta_w} rad/s, expected a positive number")
+        require("hdr", self)
 
     @classmethod
     def from_degrees(

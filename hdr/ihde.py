@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from footfall.conventions import wrap
-from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams, Directions
 from footfall.hdr.step_heading import HeadingSource, StepHeadings, require_source
 from footfall.hdr.straightness import bell_membership, circular_mean, circular_std, z_membership
 from footfall.pdr.filter.run import Step
+from footfall.settings import require, setting
 
 
 @dataclass(frozen=True)
@@ -42,30 +42,23 @@ class IhdeParams:
     """
 
     heading: HeadingSource = "course"
-    window: int = 5
-    k1: float = math.degrees(4.0)
-    a: float = 7.0
-    b: float = 500.0
-    c: float = 2.0
-    gamma_t: float = 1.1
-    w1: float = 0.8
-    w2: float = 0.2
-    gamma2: float = 0.6
-    match: float = math.radians(5.0)
+    window: int = setting(5, ge=2)
+    k1: float = setting(math.degrees(4.0), unit="1/rad", gt=0)
+    a: float = setting(7.0, gt=0)
+    b: float = setting(500.0, unit="s^-2c", gt=0)
+    c: float = setting(2.0, gt=0)
+    gamma_t: float = setting(1.1, unit="s", gt=0)
+    w1: float = setting(0.8, ge=0)
+    w2: float = setting(0.2, ge=0)
+    gamma2: float = setting(0.6, ge=0)
+    match: float = setting(math.radians(5.0), unit="rad", ge=0)
     fallback: bool = True
-    sigma: float = math.radians(4.0)
+    sigma: float = setting(math.radians(4.0), unit="rad", gt=0)
     directions: DirectionParams = field(default_factory=DirectionParams)
 
     def __post_init__(self) -> None:
         require_source("ihde", self.heading)
-        if self.window < 2:
-            raise InputError(f"ihde: window = {self.window}, expected at least 2 footfalls")
-        for name in ("k1", "a", "b", "c", "gamma_t", "sigma"):
-            if not 0 < getattr(self, name) < math.inf:
-                raise InputError(f"ihde: {name} = {getattr(self, name)}, expected a positive number")
-        for name in ("w1", "w2", "gamma2", "match"):
-            if not 0 <= getattr(self, name) < math.inf:
-                raise InputError(f"ihde: {name} = {getattr(self, name)}, expected 0 or more")
+        require("ihde", self)
 
 
 class Evaluation(NamedTuple):

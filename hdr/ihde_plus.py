@@ -32,6 +32,7 @@ from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams, Directions
 from footfall.hdr.step_heading import HeadingSource, StepHeadings, require_source
 from footfall.pdr.filter.run import Step
+from footfall.settings import require, setting
 
 SHORT, LONG = 10, 20  # windows, in steps
 LEAST = 5  # headings before anything is said
@@ -60,31 +61,23 @@ class IhdePlusParams:
     """
 
     heading: HeadingSource = "course"
-    scatter: float = math.radians(2.0)
-    straight_slope: float = math.radians(0.1)
-    curve_slopes: tuple[float, ...] = (math.radians(0.6), math.radians(2.5))
-    straight_share: float = 0.8
-    direction_share: float = 0.7
-    fixed_sd: float = math.radians(2.0)
-    drift: float = math.radians(0.05)
-    turn: float = 3.0
-    settle: int = 3
-    sigma: float = math.radians(3.0)
+    scatter: float = setting(math.radians(2.0), unit="rad", gt=0)
+    straight_slope: float = setting(math.radians(0.1), unit="rad/step", ge=0)
+    curve_slopes: tuple[float, ...] = setting((math.radians(0.6), math.radians(2.5)), unit="rad/step", gt=0)
+    straight_share: float = setting(0.8, gt=0, lt=1)
+    direction_share: float = setting(0.7, gt=0, lt=1)
+    fixed_sd: float = setting(math.radians(2.0), unit="rad", gt=0)
+    drift: float = setting(math.radians(0.05), unit="rad/s", ge=0)
+    turn: float = setting(3.0, gt=0)
+    settle: int = setting(3, ge=0)
+    sigma: float = setting(math.radians(3.0), unit="rad", gt=0)
     directions: DirectionParams = field(default_factory=DirectionParams)
 
     def __post_init__(self) -> None:
         require_source("ihde-plus", self.heading)
-        for name in ("scatter", "fixed_sd", "turn", "sigma"):
-            if not 0 < getattr(self, name) < math.inf:
-                raise InputError(f"ihde-plus: {name} = {getattr(self, name)}, expected a positive number")
-        for name in ("straight_slope", "drift", "settle"):
-            if not 0 <= getattr(self, name) < math.inf:
-                raise InputError(f"ihde-plus: {name} = {getattr(self, name)}, expected 0 or more")
-        for name in ("straight_share", "direction_share"):
-            if not 0 < getattr(self, name) < 1:
-                raise InputError(f"ihde-plus: {name} = {getattr(self, name)}, expected between 0 and 1")
-        if not self.curve_slopes or not all(0 < slope < math.inf for slope in self.curve_slopes):
-            raise InputError(f"ihde-plus: curve_slopes = {self.curve_slopes}, expected positive numbers")
+        require("ihde-plus", self)
+        if not self.curve_slopes:
+            raise InputError("ihde-plus: curve_slopes = (), expected positive numbers")
 
 
 class IhdePlusRow(NamedTuple):

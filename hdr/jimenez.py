@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from footfall.conventions import wrap
-from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams, Directions
 from footfall.hdr.step_heading import HeadingSource, StepHeadings, require_source
 from footfall.hdr.straightness import circular_mean
 from footfall.pdr.filter.run import Step
+from footfall.settings import require, setting
 
 
 @dataclass(frozen=True)
@@ -31,17 +31,12 @@ class FilterHdrParams:
     sigma : rad, standard deviation of the heading measurement, one a footfall
     """
 
-    memory: int = 2
-    gate: float = math.radians(4.0)
-    sigma: float = 0.1
+    memory: int = setting(2, ge=1)
+    gate: float = setting(math.radians(4.0), unit="rad", ge=0, le=math.inf)
+    sigma: float = setting(0.1, unit="rad", gt=0)
 
     def __post_init__(self) -> None:
-        if self.memory < 1:
-            raise InputError(f"hdr-filter: memory = {self.memory}, expected at least 1 footfall")
-        if not self.gate >= 0:
-            raise InputError(f"hdr-filter: gate = {self.gate} rad, expected 0 or more")
-        if not 0 < self.sigma < math.inf:
-            raise InputError(f"hdr-filter: sigma = {self.sigma} rad, expected a positive number")
+        require("hdr-filter", self)
 
 
 class FilterHdrRow(NamedTuple):
@@ -98,19 +93,15 @@ class JimenezParams:
     """
 
     heading: HeadingSource = "course"
-    window: int = 5
-    gate: float = math.radians(3.0)
-    sigma: float = math.radians(4.0)
-    scale: float = math.radians(5.0)
+    window: int = setting(5, ge=2)
+    gate: float = setting(math.radians(3.0), unit="rad", gt=0)
+    sigma: float = setting(math.radians(4.0), unit="rad", gt=0)
+    scale: float = setting(math.radians(5.0), unit="rad", gt=0)
     directions: DirectionParams = field(default_factory=DirectionParams)
 
     def __post_init__(self) -> None:
         require_source("ihde-jimenez", self.heading)
-        if self.window < 2:
-            raise InputError(f"ihde-jimenez: window = {self.window}, expected at least 2 footfalls")
-        for name in ("gate", "sigma", "scale"):
-            if not 0 < getattr(self, name) < math.inf:
-                raise InputError(f"ihde-jimenez: {name} = {getattr(self, name)} rad, expected more than 0")
+        require("ihde-jimenez", self)
 
 
 class JimenezRow(NamedTuple):

@@ -21,6 +21,7 @@ import numpy as np
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
 from footfall.pdr.stance import Detector, ThresholdDetector
+from footfall.settings import require, setting
 
 _BARELY = math.nextafter(1.0, 0.0)  # at rest, but no candidate for the quietest instant
 _SLACK = 1e-6  # s; stamps are decimal numbers: a sample on the window's edge counts
@@ -104,10 +105,13 @@ class Shoe:
     window_s : s
     """
 
-    sigma_accel: float = 0.01
-    sigma_gyro: float = math.radians(0.1)
-    threshold: float = 2e5
-    window_s: float = 0.020
+    sigma_accel: float = setting(0.01, unit="m/s2", gt=0)
+    sigma_gyro: float = setting(math.radians(0.1), unit="rad/s", gt=0)
+    threshold: float = setting(2e5, gt=0)
+    window_s: float = setting(0.020, unit="s", ge=0)
+
+    def __post_init__(self) -> None:
+        require("shoe", self)
 
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
         def statistic(windows: Windows, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
@@ -130,8 +134,11 @@ class AngularRateEnergy:
     window_s : s
     """
 
-    rate_max: float = math.radians(50.0)
-    window_s: float = 0.020
+    rate_max: float = setting(math.radians(50.0), unit="rad/s", gt=0)
+    window_s: float = setting(0.020, unit="s", ge=0)
+
+    def __post_init__(self) -> None:
+        require("are", self)
 
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
         return scored(
@@ -151,8 +158,11 @@ class MovingVariance:
     window_s : s
     """
 
-    sd_max: float = 1.0
-    window_s: float = 0.150
+    sd_max: float = setting(1.0, unit="m/s2", gt=0)
+    window_s: float = setting(0.150, unit="s", ge=0)
+
+    def __post_init__(self) -> None:
+        require("mv", self)
 
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
         def statistic(windows: Windows, _: np.ndarray, accel: np.ndarray) -> np.ndarray:
@@ -175,8 +185,11 @@ class Magnitude:
     window_s : s
     """
 
-    off_max: float = 0.5
-    window_s: float = 0.200
+    off_max: float = setting(0.5, unit="m/s2", gt=0)
+    window_s: float = setting(0.200, unit="s", ge=0)
+
+    def __post_init__(self) -> None:
+        require("mag", self)
 
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
         def statistic(windows: Windows, _: np.ndarray, accel: np.ndarray) -> np.ndarray:
@@ -202,10 +215,13 @@ class Adaptive:
     window_s : s
     """
 
-    share: float = 0.2
-    around_s: float = 3.0
-    held: float = 0.2
-    window_s: float = 0.020
+    share: float = setting(0.2, gt=0)
+    around_s: float = setting(3.0, unit="s", gt=0)
+    held: float = setting(0.2, ge=0)
+    window_s: float = setting(0.020, unit="s", ge=0)
+
+    def __post_init__(self) -> None:
+        require("adaptive", self)
 
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
         def statistic(windows: Windows, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:

@@ -21,6 +21,7 @@ from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.stance import Detector, StanceParams, Stances, ThresholdDetector, find_stances
 from footfall.pdr.strapdown import ORIGIN
 from footfall.recording import Recording
+from footfall.settings import require, setting
 
 REST_BLOCK_S = 0.5
 REST_GYRO = math.radians(2.0)
@@ -70,17 +71,14 @@ class PdrParams:
     detector : what rest is
     """
 
-    bias_s: float = 25.0
-    tilt_gain: float = 0.2
-    max_gap_s: float = 0.25
+    bias_s: float = setting(25.0, unit="s", gt=0)
+    tilt_gain: float = setting(0.2, ge=0, le=1)
+    max_gap_s: float = setting(0.25, unit="s", ge=0, le=math.inf)
     stance: StanceParams = field(default_factory=StanceParams)
     detector: Detector = field(default_factory=ThresholdDetector)
 
     def __post_init__(self) -> None:
-        if not 0 < self.bias_s < math.inf:
-            raise InputError(f"bias_s = {self.bias_s}, expected a positive number of seconds", "pdr")
-        if not 0 <= self.tilt_gain <= 1:
-            raise InputError(f"tilt_gain = {self.tilt_gain}, expected 0 to 1", "pdr")
+        require("pdr", self)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from footfall.conventions import GRAVITY
+from footfall.settings import require, setting
 
 
 class Detector(Protocol):
@@ -35,9 +36,12 @@ class ThresholdDetector:
     window_s : s
     """
 
-    gyro_max: float = math.radians(60.0)
-    accel_max: float = 4.0
-    window_s: float = 0.020
+    gyro_max: float = setting(math.radians(60.0), unit="rad/s", gt=0)
+    accel_max: float = setting(4.0, unit="m/s2", gt=0)
+    window_s: float = setting(0.020, unit="s", ge=0)
+
+    def __post_init__(self) -> None:
+        require("threshold", self)
 
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
         rate = np.linalg.norm(moving_mean(gyro, t, self.window_s), axis=1)
@@ -57,9 +61,12 @@ class StanceParams:
     reset_s : s, a stance longer than two of these is a still period with zero velocity this often
     """
 
-    min_stance_s: float = 0.100
-    min_stride_s: float = 0.4
-    reset_s: float = 0.3
+    min_stance_s: float = setting(0.100, unit="s", ge=0)
+    min_stride_s: float = setting(0.4, unit="s", ge=0)
+    reset_s: float = setting(0.3, unit="s", gt=0, le=math.inf)
+
+    def __post_init__(self) -> None:
+        require("stance", self)
 
 
 @dataclass(frozen=True)

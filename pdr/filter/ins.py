@@ -16,6 +16,7 @@ from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
 from footfall.pdr.filter import _kernels as kernels
 from footfall.pdr.strapdown import ORIGIN
+from footfall.settings import require, setting
 
 POSITION, VELOCITY, ATTITUDE = slice(0, 3), slice(3, 6), slice(6, 9)
 ACCEL_BIAS, GYRO_BIAS, G_SENSITIVITY = slice(9, 12), slice(12, 15), slice(15, 24)
@@ -56,35 +57,30 @@ class FilterSettings:
     """
 
     update: Literal["stance", "sample"] = "stance"
-    sigma_velocity: float = 0.05
+    sigma_velocity: float = setting(0.05, unit="m/s", gt=0)
     velocity_turns: bool = False
-    accel_noise: float = 0.03
-    gyro_noise: float = 0.002
-    accel_bias_walk: float = 1e-4
-    gyro_bias_walk: float = 1e-5
-    tilt_sd: float = math.radians(0.1)
-    heading_sd: float = 0.0
-    accel_bias_sd: float = 0.05
-    gyro_bias_sd: float = math.radians(0.1)
+    accel_noise: float = setting(0.03, unit="m/s2/sqrt(Hz)", ge=0)
+    gyro_noise: float = setting(0.002, unit="rad/s/sqrt(Hz)", ge=0)
+    accel_bias_walk: float = setting(1e-4, unit="m/s2/sqrt(s)", ge=0)
+    gyro_bias_walk: float = setting(1e-5, unit="rad/s/sqrt(s)", ge=0)
+    tilt_sd: float = setting(math.radians(0.1), unit="rad", ge=0)
+    heading_sd: float = setting(0.0, unit="rad", ge=0)
+    accel_bias_sd: float = setting(0.05, unit="m/s2", ge=0)
+    gyro_bias_sd: float = setting(math.radians(0.1), unit="rad/s", ge=0)
     estimate_accel_bias: bool = True
     estimate_gyro_bias: bool = True
     zaru: bool = False
-    sigma_rate: float = math.radians(0.5)
+    sigma_rate: float = setting(math.radians(0.5), unit="rad/s", gt=0)
     g_sensitivity: bool = False
-    g_sensitivity_sd: float = math.radians(0.1) / GRAVITY
-    gap_s: float = 0.05
-    gap_accel: float = 10.0
-    gap_gyro: float = 3.0
+    g_sensitivity_sd: float = setting(math.radians(0.1) / GRAVITY, unit="rad/s/(m/s2)", ge=0)
+    gap_s: float = setting(0.05, unit="s", ge=0)
+    gap_accel: float = setting(10.0, unit="m/s2", ge=0)
+    gap_gyro: float = setting(3.0, unit="rad/s", ge=0)
 
     def __post_init__(self) -> None:
         if self.update not in ("stance", "sample"):
             raise InputError(f'filter: update = {self.update!r}, expected "stance" or "sample"')
-        for name, value in vars(self).items():
-            if isinstance(value, float) and not 0 <= value < math.inf:
-                raise InputError(f"filter: {name} = {value}, expected a finite number, at least 0")
-        for name in ("sigma_velocity", "sigma_rate"):
-            if getattr(self, name) == 0:
-                raise InputError(f"filter: {name} = 0, expected more: nothing is known exactly")
+        require("filter", self)  # no sigma of 0: nothing is known exactly
         for name in ("zaru", "g_sensitivity"):
             if getattr(self, name) and not self.estimate_gyro_bias:
                 raise InputError(f"filter: {name} needs estimate_gyro_bias, which is off")

@@ -101,22 +101,23 @@ def test_defaults_are_told_in_the_digits_that_they_were_written_in():
 @pytest.mark.parametrize(
     ("name", "value", "sentence"),
     [
-        ("theta_w_deg_s", -1, "theta_w_deg_s = -1: expected a number, more than 0 (deg/s)"),
-        ("theta_w_deg_s", 0, "theta_w_deg_s = 0: expected a number, more than 0 (deg/s)"),
-        ("theta_w_deg_s", math.nan, "theta_w_deg_s = nan: expected a number, more than 0 (deg/s)"),
-        ("theta_w_deg_s", "0.3", "theta_w_deg_s = 0.3: expected a number, more than 0 (deg/s)"),
-        ("theta_w_deg_s", True, "theta_w_deg_s = True: expected a number, more than 0 (deg/s)"),
-        ("tau_s", math.inf, "tau_s = inf: expected a number, 0 or more (s)"),
-        ("tau_s", -1e-9, "tau_s = -1e-09: expected a number, 0 or more (s)"),
+        ("theta_w_deg_s", -1, "theta_w_deg_s = -1: expected a positive number"),
+        ("theta_w_deg_s", 0, "theta_w_deg_s = 0: expected a positive number"),
+        ("theta_w_deg_s", math.nan, "theta_w_deg_s = nan: expected a positive number"),
+        ("theta_w_deg_s", "0.3", "theta_w_deg_s = 0.3: expected a positive number"),
+        ("theta_w_deg_s", True, "theta_w_deg_s = True: expected a positive number"),
+        ("tau_s", math.inf, "tau_s = inf: expected a number, 0 or more"),
+        ("tau_s", -1e-9, "tau_s = -1e-09: expected a number, 0 or more"),
         ("gain", 1.5, "gain = 1.5: expected a number, 0 to 1"),
         ("share", 1, "share = 1: expected a number, between 0 and 1"),
-        ("match_deg", 90.1, "match_deg = 90.1: expected a number, 0 to 90 (deg)"),
-        ("slopes_deg", [1, -1], "slopes_deg = [1, -1]: expected a list of numbers, more than 0 (deg)"),
+        ("match_deg", 90.1, "match_deg = 90.1: expected a number, 0 to 90"),
+        ("slopes_deg", [1, -1], "slopes_deg = [1, -1]: expected a list of positive numbers"),
+        ("slope", -1, "slope = -1: expected a number, 0 or more (rad/step)"),
         ("source", "foot", 'source = foot: expected "yaw" or "course"'),
         ("fallback", 1, "fallback = 1: expected true or false"),
         ("directions.count", 0, "directions.count = 0: expected a whole number, at least 1"),
         ("directions.count", 2.0, "directions.count = 2.0: expected a whole number, at least 1"),
-        ("directions.reference_deg", "n", "directions.reference_deg = n: expected a number or none (deg)"),
+        ("directions.reference_deg", "n", "directions.reference_deg = n: expected a number or none"),
     ],
 )
 def test_a_value_that_cannot_be_is_refused_in_a_sentence(name, value, sentence):
@@ -167,11 +168,11 @@ def test_nothing_to_set_is_said():
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        ({"tau_s": -1.0}, "mine: tau_s = -1.0 s, expected 0 or more"),
-        ({"tau_s": math.inf}, "mine: tau_s = inf s, expected 0 or more"),
-        ({"theta_w": math.nan}, "mine: theta_w = nan rad/s, expected more than 0"),
+        ({"tau_s": -1.0}, "mine: tau_s = -1.0, expected 0 or more"),
+        ({"tau_s": math.inf}, "mine: tau_s = inf, expected 0 or more"),
+        ({"theta_w": math.nan}, "mine: theta_w = nan rad/s, expected a positive number"),
         ({"gain": 2.0}, "mine: gain = 2.0, expected 0 to 1"),
-        ({"slopes": (0.1, 0.0)}, "mine: slopes = (0.1, 0.0) rad, expected more than 0"),
+        ({"slopes": (0.1, 0.0)}, "mine: slopes = (0.1, 0.0) rad, expected positive numbers"),
     ],
 )
 def test_a_dataclass_refuses_by_the_same_bounds(given, sentence):

@@ -139,7 +139,7 @@ def test_the_least_of_angles_is_one():
     ("keys", "message"),
     [
         ({"count": 0}, "count = 0, expected at least 1"),
-        ({"reference": math.nan}, "reference = nan rad, expected a finite angle"),
+        ({"reference": math.nan}, "reference = nan rad, expected a finite number"),
         ({"learn_after": 0.0}, "learn_after = 0.0, expected a positive"),
         ({"learn_agreement": 1.5}, "learn_agreement = 1.5, expected 0 to 1"),
     ],

@@ -258,8 +258,8 @@ def test_headings_before_a_correction_are_no_scatter(corrector):
     ("make", "message"),
     [
         (lambda: IhdeParams(window=1), "ihde: window = 1"),
-        (lambda: IhdeParams(k1=-1.0), "ihde: k1 = -1.0, expected a positive"),
-        (lambda: IhdeParams(sigma=0.0), "ihde: sigma = 0.0, expected a positive"),
+        (lambda: IhdeParams(k1=-1.0), "ihde: k1 = -1.0 1/rad, expected a positive"),
+        (lambda: IhdeParams(sigma=0.0), "ihde: sigma = 0.0 rad, expected a positive"),
         (lambda: IhdeParams(w2=math.nan), "ihde: w2 = nan, expected 0 or more"),
         (lambda: HdeParams(sigma=math.inf), "hde: sigma = inf rad, expected a positive"),
         (lambda: Hde2010Params(i_c=-0.1), "hde-2010: i_c = -0.1 rad"),

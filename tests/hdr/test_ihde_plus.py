@@ -270,9 +270,9 @@ def test_what_lies_beside_a_line():
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        ({"scatter": 0.0}, "scatter = 0.0, expected a positive"),
-        ({"sigma": math.inf}, "sigma = inf, expected a positive"),
-        ({"drift": -0.1}, "drift = -0.1, expected 0 or more"),
+        ({"scatter": 0.0}, "scatter = 0.0 rad, expected a positive"),
+        ({"sigma": math.inf}, "sigma = inf rad, expected a positive"),
+        ({"drift": -0.1}, "drift = -0.1 rad/s, expected 0 or more"),
         ({"settle": -1}, "settle = -1, expected 0 or more"),
         ({"straight_share": 1.0}, "straight_share = 1.0, expected between 0 and 1"),
         ({"curve_slopes": ()}, r"curve_slopes = \(\), expected positive"),
