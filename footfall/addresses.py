@@ -1,7 +1,7 @@
 """Dotted addresses into a document that a pydantic model checks: which there are, and how a value is set.
 
-`path.elements[kind=arc].radius_m`: tables are dotted, and an element of a list is chosen by its number from 0,
-by a key's value, or all of them by `*`.
+`path.elements[kind=arc].radius_m`: tables are dotted, and an element of a list is chosen by its number
+from 0, by a key's value, or all of them by `*`.
 """
 
 from __future__ import annotations
@@ -53,9 +53,7 @@ def parse(address: str) -> tuple[Part, ...]:
     for text in re.split(r"\.(?![^\[]*\])", address):
         match = _PART.fullmatch(text)
         if match is None:
-            raise InputError(
-                f"{address}: {text!r} is no step of an address such as path.elements[0].length_m"
-            )
+            raise InputError(f"{text!r} is no step of an address such as path.elements[0].length_m", address)
         found.append(Part(match["name"], match["which"]))
     return tuple(found)
 
@@ -169,11 +167,11 @@ def _set(table: dict[str, Any], parts: tuple[Part, ...], value: Any, address: st
     below = table.setdefault(name, {}) if which is None else table.get(name, [])
     if which is None and isinstance(below, list):
         raise InputError(
-            f"{address}: {here} is a list of {len(below)}: say which, as in {here}[0] or {here}[*]"
+            f"{here} is a list of {len(below)}: say which, {here}[0] or {here}[*]", address
         )
     if which is None:
         if not isinstance(below, dict):
-            raise InputError(f"{address}: {here} is {below!r}, there is nothing below it")
+            raise InputError(f"{here} is {below!r}, there is nothing below it", address)
         _set(below, rest, value, address, here)
         return
     entries = below if isinstance(below, list) else [below]
@@ -183,7 +181,7 @@ def _set(table: dict[str, Any], parts: tuple[Part, ...], value: Any, address: st
         elif isinstance(entries[index], dict):
             _set(entries[index], rest, value, address, f"{here}[{index}]")
         else:
-            raise InputError(f"{address}: {here}[{index}] is {entries[index]!r}, there is nothing below it")
+            raise InputError(f"{here}[{index}] is {entries[index]!r}, there is nothing below it", address)
 
 
 def _chosen(entries: list[Any], which: str, address: str, here: str) -> list[int]:
@@ -198,7 +196,7 @@ def _chosen(entries: list[Any], which: str, address: str, here: str) -> list[int
             i for i, entry in enumerate(entries) if isinstance(entry, dict) and str(entry.get(key)) == text
         ]
     else:
-        raise InputError(f"{address}: [{which}] chooses nothing: expected a number from 0, * or key=value")
+        raise InputError(f"[{which}] chooses nothing: expected a number from 0, * or key=value", address)
     if not found:
-        raise InputError(f"{address}: {here} has {len(entries)} elements, and [{which}] is none of them")
+        raise InputError(f"{here} has {len(entries)} elements, and [{which}] is none of them", address)
     return found

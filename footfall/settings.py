@@ -78,7 +78,7 @@ class Leaf(NamedTuple):
     @property
     def expected(self) -> str:
         """What may stand there, in words."""
-        words, bounds = _kind(self.type), str(_Limits("", self.ge, self.gt, self.le, self.lt))
+        words, bounds = kind_of(self.type), str(_Limits("", self.ge, self.gt, self.le, self.lt))
         if bounds == "positive":
             words, bounds = words.replace("number", "positive number"), ""
         unit = _unnamed(self.name, self.unit)
@@ -254,18 +254,18 @@ def _addressable(hint: Any) -> bool:
     return get_origin(hint) is Literal or hint in (bool, int, float, str, NoneType)
 
 
-def _kind(hint: Any) -> str:
+def kind_of(hint: Any) -> str:
     """The words for a type."""
     origin, inner = get_origin(hint), get_args(hint)
     if origin is Literal:
         *most, last = [f'"{one}"' if isinstance(one, str) else str(one) for one in inner]
         return f"{', '.join(most)} or {last}" if most else last
     if origin in (Union, UnionType):
-        return " or ".join(map(_kind, inner))
+        return " or ".join(map(kind_of, inner))
     if origin is tuple:
         if len(inner) == 2 and inner[1] is Ellipsis:
-            return f"a list of {_kind(inner[0]).removeprefix('a ')}s"
-        return f"a list of {len(inner)}: {', '.join(map(_kind, inner))}"
+            return f"a list of {kind_of(inner[0]).removeprefix('a ')}s"
+        return f"a list of {len(inner)}: {', '.join(map(kind_of, inner))}"
     return {bool: "true or false", int: "a whole number", float: "a number", str: "text", NoneType: "none"}[
         hint
     ]

@@ -50,7 +50,8 @@ _ENDINGS = {
     "_deg_rt_h": "deg/rt-h", "_deg_h_rt_h": "deg/h/rt-h", "_deg_h": "deg/h", "_deg_s": "deg/s", "_deg": "deg",
     "_ug_rt_hz": "ug/rt-Hz", "_ug_rt_h": "ug/rt-h", "_ug_g2": "ug/g2", "_ug": "ug",
     "_mg_k2": "mg/K2", "_mg_k": "mg/K", "_mg": "mg", "_g": "g", "_percent_fs": "% of full scale",
-    "_percent": "%", "_m_s": "m/s", "_degC": "degC", "_hz": "Hz", "_Ns": "N s", "_kg": "kg", "_m": "m", "_s": "s",
+    "_percent": "%", "_m_s": "m/s", "_degC": "degC", "_hz": "Hz", "_Ns": "N s", "_kg": "kg",
+    "_m": "m", "_s": "s",
 }  # fmt: skip
 
 
@@ -166,9 +167,9 @@ def with_values(base: Documents, values: Mapping[str, Any]) -> Documents:
         elif area in _AREAS:
             base = _AREAS[area](base, address, path, value)
         elif area in METHODS:
-            raise InputError(f"{address}: method {area!r} is not among {', '.join(sorted(own))}")
+            raise InputError(f"method {area!r} is not among {', '.join(sorted(own))}", address)
         else:
-            raise InputError(f"{address}: unknown area{did_you_mean(area, [*_AREAS, *sorted(own)])}")
+            raise InputError(f"unknown area{did_you_mean(area, [*_AREAS, *sorted(own)])}", address)
     return base
 
 
@@ -184,7 +185,7 @@ def _told(method: Method, area: str, path: str, value: Any) -> Method:
 def _scenario(base: Documents, address: str, path: str, value: Any) -> Documents:
     _require_known(address, [f"scenario.{key.address}" for key in keys(ScenarioFile)])
     if address == "scenario.sensor.imu":
-        raise InputError("scenario.sensor.imu: set imu, or the option --imu")
+        raise InputError("set imu, or use the option --imu", address)
     table = _opened_subjects(base.scenario.table, path)
     return replace(base, scenario=replace(base.scenario, table=edited(table, path, value)))
 
@@ -216,7 +217,7 @@ def _imu(base: Documents, address: str, path: str, value: Any) -> Documents:
         spread = next((name for name in known if name.replace("_sigma", "") == address), None)
         if one and spread:
             raise InputError(
-                f"{address}: unknown; did you mean {spread} (of the sheet) or {one} (of one unit)?"
+                f"unknown; did you mean {spread} (of the sheet) or {one} (of a unit)?", address
             )
         _require_known(address, known)
     return replace(base, sheet=replace(base.sheet, table=edited(base.sheet.table, path, value)))
@@ -266,7 +267,7 @@ def _require_known(address: str, known: Iterable[str]) -> None:
     parse(address)
     patterns = {pattern(one) for one in known}
     if pattern(address) not in patterns:
-        raise InputError(f"{address}: unknown{did_you_mean(pattern(address), sorted(patterns))}")
+        raise InputError(f"unknown{did_you_mean(pattern(address), sorted(patterns))}", address)
 
 
 def parameters(base: Documents) -> Iterator[Parameter]:

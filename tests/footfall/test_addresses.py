@@ -102,7 +102,7 @@ def test_a_value_is_set_where_the_address_says_and_nowhere_else(address, expecte
 @pytest.mark.parametrize(
     ("address", "message"),
     [
-        ("path.radius_m", r"path is a list of 3: say which, as in path\[0\]"),
+        ("path.radius_m", r"path is a list of 3: say which, path\[0\]"),
         ("path[3].radius_m", r"path has 3 elements, and \[3\] is none of them"),
         ("path[kind=up].radius_m", r"\[kind=up\] is none of them"),
         ("path[last].radius_m", r"\[last\] chooses nothing"),

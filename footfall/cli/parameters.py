@@ -1,0 +1,71 @@
+"""`footfall parameters`: every value that can be set, by its address."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from footfall.cli.options import JsonOption
+from footfall.cli.terminal import OUT, print_json
+from footfall.errors import InputError
+
+
+def parameters(
+    word: Annotated[
+        str | None, typer.Argument(help="Show only addresses that contain this.", show_default=False)
+    ] = None,
+    scenario: Annotated[
+        str, typer.Option(help="The scenario whose values are shown: a name or your TOML file.")
+    ] = "closed-loop",
+    imu: Annotated[
+        str | None,
+        typer.Option(
+            help="The data sheet whose values are shown; the scenario's if left out.", show_default=False
+        ),
+    ] = None,
+    methods: Annotated[
+        str | None,
+        typer.Option(
+            help="Methods whose parameters are shown, separated by commas; all if left out.",
+            show_default=False,
+        ),
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """List every parameter: its address, type, unit, value, bounds, and the first stage that it changes.
+
+    Set one with --set ADDRESS=VALUE in run, walk, record and track.
+    """
+    from footfall.hdr.methods import METHODS
+    from footfall.scenarios.parameters import STAGES, documents
+    from footfall.scenarios.parameters import parameters as listed
+    from footfall.scenarios.report.tables import new_table
+    from footfall.settings import did_you_mean
+
+    chosen = list(METHODS) if methods is None else methods.split(",")
+    every = list(listed(documents(scenario, imu=imu, methods=chosen)))
+    found = [one for one in every if word is None or word.lower() in one.address.lower()]
+    if not found:
+        raise InputError(f"no address contains {word!r}{did_you_mean(str(word), [p.address for p in every])}")
+    if as_json:
+        print_json({one.address: {**one._asdict(), "default": _plain(one.default)} for one in found})
+        return
+    table = new_table("address", "value", "allowed", "repeats", left=4)
+    for one in found:
+        value = f"{_text(one.default)} {one.unit}" if one.default is not None else one.unit
+        table.add_row(one.address, value, ", ".join(filter(None, (one.type, one.bounds))), one.stage)
+    OUT.print(table)
+    OUT.print("[dim]repeats: the first stage that a new value changes: " + ", ".join(STAGES) + "[/dim]")
+
+
+def _plain(value: object) -> object:
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _text(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list | tuple):
+        return ", ".join(map(_text, value))
+    return "" if value is None else str(value)
