@@ -14,7 +14,7 @@ from tests.helpers.commands import SCORES, expect_one_sentence, one_document
 
 
 def shell(line, folder, **options):
-    command = [sys.executable, "-m", "footfall.cli.app", *shlex.split(line)]
+    command = [sys.executable, "-m", "footfall", *shlex.split(line)]
     return subprocess.Popen(
         command, cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options
     )

@@ -25,7 +25,7 @@ STILL = np.zeros(N_ACTION, dtype=np.float32)
 
 def draw(output: Path, *options: str) -> subprocess.CompletedProcess[str]:
     """`footfall render` in a process of its own: MuJoCo chooses what it draws with when first imported."""
-    command = [sys.executable, "-m", "footfall.cli.app", "render", "straight", "-o", str(output), *options]
+    command = [sys.executable, "-m", "footfall", "render", "straight", "-o", str(output), *options]
     result = subprocess.run(
         command, capture_output=True, text=True, env={**os.environ}, check=False, timeout=300
     )

@@ -1,0 +1,56 @@
+"""`footfall allan`: how long an IMU should rest."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from footfall.cli.options import FormatOption, JsonOption, RateOption, UnitOption
+from footfall.cli.terminal import ERR, OUT, blaming, finite, print_json, require_output
+
+
+def allan(
+    recording: Annotated[
+        Path | None,
+        typer.Argument(help="A recording at rest, best an hour long; if left out, one is simulated."),
+    ] = None,
+    imu: Annotated[str, typer.Option(help="The IMU to simulate: its name or your data sheet.")] = "nimu",
+    unit_seed: Annotated[
+        int, typer.Option(min=0, help="Which individual of that IMU: each seed is another one.")
+    ] = 1,
+    hours: Annotated[
+        float, typer.Option(min=0.05, max=24, help="How long the simulated IMU rests.", callback=finite)
+    ] = 1.0,
+    figure: Annotated[
+        Path | None, typer.Option(help="PNG file to draw the Allan deviation into.", show_default=False)
+    ] = None,
+    format: FormatOption = "auto",
+    unit: UnitOption = None,
+    rate: RateOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Tell how long an IMU should rest before a walk, from its Allan deviation.
+
+    The time is that after which averaging the gyros removes no more noise (T_bias of the HDR paper).
+    """
+    from footfall.formats import parse_units, read
+    from footfall.models.imu import draw_unit, load_spec
+    from footfall.scenarios.report.allan import allan_report, allan_table, resting_recording
+
+    if figure is not None:
+        require_output(figure, ".png")
+    if recording is not None:
+        sizes = parse_units(unit or ())
+        resting, _ = read(recording, format, sizes=sizes, rate_hz=rate, walk=False)
+    else:
+        worn = draw_unit(load_spec(imu), unit_seed)
+        with ERR.status(f"resting for {hours:g} h"):
+            resting = resting_recording(worn, hours * 3600, unit_seed)
+    with blaming(recording or imu):
+        result = allan_report(resting, figure)
+    if as_json:
+        print_json(result)
+    else:
+        OUT.print(allan_table(result))

@@ -1,0 +1,49 @@
+"""`footfall list`: what comes with Footfall."""
+
+from __future__ import annotations
+
+from footfall.cli.options import JsonOption
+from footfall.cli.terminal import OUT, print_json
+
+
+def list_(as_json: JsonOption = False) -> None:
+    """Show what comes with Footfall: scenarios, IMUs, methods, detectors, mounts and sensor effects."""
+    from footfall.hdr.methods import METHODS
+    from footfall.models.body import MOUNTS
+    from footfall.models.imu import EFFECTS, load_spec, stock_specs
+    from footfall.pdr.detectors import DETECTORS, summary
+    from footfall.scenarios.report.tables import new_table, titled
+    from footfall.scenarios.scenario import load_scenario, stock_scenarios
+
+    scenarios = {name: load_scenario(name) for name in stock_scenarios()}
+    imus = {name: load_spec(name).name for name in stock_specs()}
+    methods = {name: method.description for name, method in METHODS.items()}
+    detectors = {name: summary(found) for name, found in DETECTORS.items()}
+    if as_json:
+        print_json(
+            {
+                "scenarios": {name: scenario.description for name, scenario in scenarios.items()},
+                "imus": imus,
+                "methods": methods,
+                "detectors": detectors,
+                "mounts": list(MOUNTS),
+                "effects": list(EFFECTS),
+            }
+        )
+        return
+    table = new_table("name", "what", "length\nm", "pace\nm/s", "walks", left=2)
+    for name, scenario in scenarios.items():
+        length = f"{scenario.path.route.length:.0f}"
+        table.add_row(name, scenario.description, length, f"{scenario.pace:g}", f"{scenario.walks}")
+    OUT.print(titled("Scenarios", table))
+    for title, rows in (
+        ("IMUs", imus),
+        ("Methods, from a recording to a track", methods),
+        ("Detectors of rest", detectors),
+    ):
+        table = new_table("name", "what", left=2)
+        for name, text in rows.items():
+            table.add_row(name, text)
+        OUT.print(titled(title, table))
+    OUT.print(f"[bold]Mounts of the IMU[/bold]: {', '.join(MOUNTS)}")
+    OUT.print(f"[bold]Sensor effects[/bold], in their order: {', '.join(EFFECTS)}")

@@ -1,0 +1,108 @@
+"""`footfall record`: what an IMU says of a walk, or adds to a real recording."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from footfall.cli.options import FormatOption, OutputOption, RateOption, UnitOption
+from footfall.cli.terminal import ERR, finite, require_output, say
+from footfall.errors import InputError
+
+
+def record(
+    output: OutputOption,
+    walk: Annotated[
+        Path | None, typer.Argument(help="A walk that `footfall walk` wrote.", show_default=False)
+    ] = None,
+    from_recording: Annotated[
+        Path | None,
+        typer.Option(
+            help="Instead of a walk, a real recording: its samples with that IMU's bias, temperature and "
+            "g-sensitivity errors on top.",
+            show_default=False,
+        ),
+    ] = None,
+    imu: Annotated[
+        str, typer.Option(help="An IMU's name (see `footfall list`) or your data sheet.")
+    ] = "nimu",
+    unit_seed: Annotated[
+        int, typer.Option(min=0, help="Which individual of that IMU: each seed is another one.")
+    ] = 1,
+    noise_seed: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            help="Which recording of it: noise and turn-on bias; the number of --unit-seed if left out.",
+            show_default=False,
+        ),
+    ] = None,
+    without: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Switch a sensor effect off (see `footfall list`); may be repeated.", show_default=False
+        ),
+    ] = None,
+    indoors: Annotated[
+        float, typer.Option(help="Temperature of the room that the IMU comes from, degC.", callback=finite)
+    ] = 20.0,
+    outdoors: Annotated[
+        float, typer.Option(help="Temperature where it is walked, degC.", callback=finite)
+    ] = 20.0,
+    bias_shift: Annotated[
+        float,
+        typer.Option(
+            help="Gyro bias about the vertical, deg/s, left positive, from the walk's first step on.",
+            callback=finite,
+        ),
+    ] = 0.0,
+    format: FormatOption = "auto",
+    unit: UnitOption = None,
+    rate: RateOption = None,
+) -> None:
+    """Record a walk with one individual IMU: the truth with that sensor's errors.
+
+    With --from-recording a real foot walks, and what the IMU adds to its recording is known; --format, --unit
+    and --rate tell how to read it.
+    """
+    from footfall.formats import parse_units, read
+    from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
+    from footfall.recording import write_recording
+    from footfall.simulate.from_recording import add_errors
+    from footfall.simulate.record import record as record_walk
+    from footfall.simulate.walk import footfalls_path, read_walk
+
+    if walk is not None and from_recording is None:
+        require_output(output, ".parquet", walk, footfalls_path(walk))
+    elif from_recording is not None and walk is None:
+        require_output(output, ".parquet", from_recording)
+    else:
+        raise InputError("record: expected either a walk or --from-recording with a recording")
+    if walk is not None and (format != "auto" or unit or rate is not None):
+        raise InputError("record: --format, --unit and --rate tell how to read --from-recording, not a walk")
+    if walk is None and bias_shift:
+        raise InputError(
+            "record: --bias-shift is for walks: nobody says when a real recording begins to move"
+        )
+    worn = draw_unit(load_spec(imu), unit_seed)
+    noise = unit_seed if noise_seed is None else noise_seed
+    air = TemperatureProfile.step(indoors, outdoors)
+    with ERR.status("recording"):
+        if walk is not None:
+            recording = record_walk(
+                read_walk(walk),
+                worn,
+                seed=noise,
+                temperature=air,
+                without=without or (),
+                bias_shift=math.radians(bias_shift),
+            )
+        else:
+            assert from_recording is not None
+            real, _ = read(from_recording, format, sizes=parse_units(unit or ()), rate_hz=rate)
+            recording = add_errors(real, worn, seed=noise, temperature=air, without=without or ())
+        write_recording(recording, output)
+    say(f"{len(recording.t)} samples: {output}")

@@ -1,0 +1,87 @@
+"""`footfall walk`: one walk's truth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.progress import Progress
+
+from footfall.cli.options import NoCacheOption, ScenarioArgument
+from footfall.cli.terminal import ERR, finite, require_output, say
+from footfall.errors import InputError
+
+
+def walk(
+    scenario: ScenarioArgument,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="Parquet file to write; may be left out with --view.", show_default=False
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Seed of this walk; the scenario says if left out.")
+    ] = None,
+    number: Annotated[
+        int, typer.Option(min=1, help="Which of the scenario's walks: its subject and its seed.")
+    ] = 1,
+    rate: Annotated[
+        float | None,
+        typer.Option(
+            help="Samples per second (Hz), a divisor of 1000; the scenario says if left out.",
+            callback=finite,
+        ),
+    ] = None,
+    mount: Annotated[
+        str | None,
+        typer.Option(
+            help="Where on the shoe the IMU sits (see `footfall list`); the scenario says if left out."
+        ),
+    ] = None,
+    view: Annotated[
+        bool, typer.Option("--view", help="Watch it first in MuJoCo's viewer, which needs a screen.")
+    ] = False,
+    no_cache: NoCacheOption = False,
+) -> None:
+    """Walk a scenario once and write the truth: where the IMU was, and what a perfect one would say.
+
+    The true footfalls go into a second file: walk.parquet and walk.footfalls.parquet.
+    """
+    from dataclasses import replace
+
+    from footfall.models.body import MOUNTS
+    from footfall.scenarios.scenario import load_scenario
+    from footfall.simulate.cache import cached_walk
+    from footfall.simulate.truth import divisor
+    from footfall.simulate.walk import write_walk
+    from footfall.simulate.walking import PHYSICS_STEP
+
+    if output is not None:
+        require_output(output, ".parquet")
+    elif not view:
+        raise InputError("Missing option '--output' / '-o' (see `footfall walk --help`)")
+    plan = load_scenario(scenario).plan(number - 1)
+    if mount is not None:
+        if mount not in MOUNTS:
+            raise InputError(f"--mount {mount!r} is unknown, expected one of {', '.join(MOUNTS)}")
+        plan = replace(plan, mount=MOUNTS[mount])
+    if rate is not None:
+        divisor(PHYSICS_STEP, rate)
+        plan = replace(plan, rate_hz=rate)
+    if seed is not None:
+        plan = replace(plan, seed=seed)
+    if view:
+        from footfall.simulate.render import view as show
+
+        show(plan)
+    if output is None:
+        return
+    with Progress(console=ERR, transient=True, disable=not ERR.is_terminal) as progress:
+        bar = progress.add_task("walking", total=plan.route.length)
+        truth = cached_walk(
+            plan, use_cache=not no_cache, on_progress=lambda metres: progress.update(bar, completed=metres)
+        )
+    write_walk(truth, output)
+    say(f"{len(truth.footfalls.t)} footfalls in {truth.t[-1]:.0f} s: {output}")
