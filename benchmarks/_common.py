@@ -37,7 +37,7 @@ R = TypeVar("R")
 NOISE_STEP = 100_000  # between the seeds of one unit's noises: more than there are units
 
 # A file is as wide as the widest table.
-out = Console(soft_wrap=True, width=None if sys.stdout.isatty() else 120)
+out = Console(soft_wrap=True, width=None if sys.stdout.isatty() else 150)
 err = Console(stderr=True, soft_wrap=True)
 
 

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
+from benchmarks._page import Sheet
 from footfall.scenarios.judge.papers import HDR_TABLE_2_MEAN
 from footfall.scenarios.report.tables import extent, spread
 
 ERRORS = {"average": 1, "final": 0}  # columns of the errors, in the order in which the paper gives them
 STATISTICS = ("mean", "median", "p90")
+_HEADINGS = ["judged on", "", "mean", "median", "90th percentile"]
 
 
 @dataclass(frozen=True)
@@ -101,36 +103,34 @@ class Judged:
             table.add_row(*row)
         return table
 
-    def markdown(self) -> str:
+    def sheet(self) -> Sheet:
         """Over all recordings, for a page."""
-        lines = ["| judged on | | mean | median | 90th percentile |", "| --- | --- | --- | --- | --- |"]
+        sheet = Sheet("hdr", self.title, _HEADINGS, left=2)
         for label, method, found in self._rows():
-            cells = [found.pair(name) for name in STATISTICS]
-            lines.append("| " + " | ".join([label, method, *cells]) + " |")
-        lines += ["| " + " | ".join(cells) + " |" for cells in _paper_rows()]
-        return "\n".join(lines)
+            sheet.rows.append([label, method, *(found.pair(name) for name in STATISTICS)])
+        sheet.rows += _paper_rows()
+        return sheet
 
-    def noise_markdown(self) -> str:
+    def noise_sheet(self) -> Sheet:
         """From noise to noise, for a page."""
-        head = ["", "", "mean", "median", "one unit's smallest to largest, median"]
-        lines = ["| " + " | ".join(head) + " |", "| " + " | ".join(["---"] * len(head)) + " |"]
+        heads = ["", "", "mean", "median", "one unit's smallest to largest, median"]
+        sheet = Sheet("hdr noise", self.title, heads, left=2)
         for label, method, found in self._rows():
             apart = " / ".join(f"{found.unit[error]:.1f}" for error in ERRORS)
-            cells = [found.extents("mean"), found.extents("median"), apart]
-            lines.append("| " + " | ".join([label, method, *cells]) + " |")
-        return "\n".join(lines)
+            sheet.rows.append([label, method, found.extents("mean"), found.extents("median"), apart])
+        return sheet
 
     def as_dict(self) -> dict[str, Any]:
         """Plain numbers."""
         return {name: asdict(group) for name, group in self.groups.items()}
 
 
-def mounts_markdown(judged: Mapping[str, Judged]) -> str:
+def mounts_sheet(judged: Mapping[str, Judged]) -> Sheet:
     """All units drawn, from one place of the IMU to the next, for a page."""
-    lines = ["| judged on | | mean | median | 90th percentile |", "| --- | --- | --- | --- | --- |"]
+    sheet = Sheet("hdr mounts", "From one mount to the next", _HEADINGS, left=2)
     for title, found in judged.items():
         group = found.groups["all units drawn"]
         for method in list(group.methods)[:2]:  # uncorrected, and HDR as it comes
             cells = [group.methods[method].pair(name) for name in STATISTICS]
-            lines.append("| " + " | ".join([title if method == "uncorrected" else "", method, *cells]) + " |")
-    return "\n".join(lines)
+            sheet.rows.append([title if method == "uncorrected" else "", method, *cells])
+    return sheet

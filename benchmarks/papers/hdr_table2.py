@@ -34,9 +34,9 @@ from benchmarks._common import (
     within_paper,
     write_json,
 )
+from benchmarks._page import by_name, fill
 from benchmarks.papers._hdr_figure import draw
-from benchmarks.papers._hdr_page import Group, Judged, mounts_markdown, summary
-from benchmarks.papers._ihde_page import fill
+from benchmarks.papers._hdr_page import Group, Judged, mounts_sheet, summary
 from footfall.hdr.hdr import HdrParams, headings
 from footfall.scenarios.scenario import Scenario, load_scenario
 
@@ -211,9 +211,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 alone = {name: errors[0] for name, errors in methods.items()}
                 draw(chosen.figure, I_C, THETA_W, (tuned_map, judged_map), alone, found.in_range)
     if chosen.page:
-        tables = {"hdr": judged[first].markdown(), "hdr noise": judged[first].noise_markdown()}
-        moves = {"hdr mounts": mounts_markdown(judged)} if moved else {}
-        fill(chosen.page, tables | moves)
+        sheets = [judged[first].sheet(), judged[first].noise_sheet()]
+        fill(chosen.page, by_name([*sheets, mounts_sheet(judged)] if moved else sheets))
     document = {
         "tau_s": chosen.tau,
         "i_c_deg_s": I_C,

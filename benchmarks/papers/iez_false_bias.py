@@ -10,19 +10,17 @@ python -m benchmarks.papers.iez_false_bias --page docs/iez.md --figures docs/ima
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from rich.table import Table
 
-from benchmarks._common import options, out, run_all, write_json
+from benchmarks._common import options, run_all, write_json
+from benchmarks._page import Sheet, by_name, fill
 from benchmarks.papers._false_bias import PAPER, PARTS, Feet, all_but, drive, without
 from benchmarks.papers._false_bias_figures import cause, cure
-from benchmarks.papers._ihde_page import fill
 from benchmarks.validation._real import BESIDE, find
 from footfall.hdr.filtered import filter_track
 from footfall.hdr.methods import Reckoning, on_papers_filter, pdr_track
@@ -44,31 +42,7 @@ OURS = FilterSettings()
 AFTER_S = 240.0  # of the walk, for what is run sample by sample in Python
 PLAIN_S = 60.0  # the same, for what is run in numpy
 GLRT = DETECTORS["shoe"]  # the paper's detector, Eq. 14-19
-Rows = Sequence[Sequence[str]]
-
-
-@dataclass(frozen=True)
-class Tables:
-    """Headings and rows, by name."""
-
-    of: Mapping[str, tuple[Sequence[str], Rows]]
-
-    def show(self) -> None:
-        """On the terminal."""
-        for name, (head, rows) in self.of.items():
-            table = Table(title=name, title_justify="left")
-            for k, heading in enumerate(head):
-                table.add_column(heading, justify="right" if k else "left")
-            for row in rows:
-                table.add_row(*row)
-            out.print(table)
-
-    def markdown(self) -> dict[str, str]:
-        """For a page."""
-        return {
-            name: "\n".join("| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head), *rows])
-            for name, (head, rows) in self.of.items()
-        }
+Rows = list[list[str]]
 
 
 def settings_of(sigma_v: float, update: str, states: int) -> FilterSettings:
@@ -212,36 +186,38 @@ def main(arguments: Sequence[str] | None = None) -> None:
     turned = [f"{feet.motion.turned:.0%}" for feet in everyone]
     feet_rows, pairs = by_feet(everyone)
     ahead = [f"sigma_v {value:g} m/s" for value in SIGMA_V]
-    tables: dict[str, tuple[Sequence[str], Rows]] = {
-        "grid": (["heading error (deg), mean / final", "states", *ahead], grid(simulated)),
-        "parts": (
+    sheets = [
+        Sheet("grid", "Settings", ["heading error (deg), mean / final", "states", *ahead], grid(simulated)),
+        Sheet(
+            "parts",
+            "Parts of the motion",
             ["false bias (deg/s) by what is called zero", *names],
             [
                 *([part, *(f"{one[part]:+.2f}" for one in made_of)] for part in PARTS),
                 ["share of the motion that turns about one point", *turned],
             ],
         ),
-        "feet": (
+        Sheet(
+            "feet",
+            "Feet",
             ["deg/s", *ahead, "told its motion", "first minute", "no P(v, b)", "no P(v, psi)", "**default**"],
             feet_rows,
         ),
-        "detectors": (
-            ["paper / default, deg/s", *names],
-            by_detector(everyone),
-        ),
-    }
+        Sheet("detectors", "Detectors", ["paper / default, deg/s", *names], by_detector(everyone)),
+    ]
     if chosen.walks:
         head = ["P_err (%), median (10th to 90th percentile)", *IHDE_TABLE_2]
-        tables["tests"] = (head, paper_tests(chosen.walks, chosen.processes))
-    found = Tables(tables)
-    found.show()
+        tests = paper_tests(chosen.walks, chosen.processes)
+        sheets.append(Sheet("tests", "The paper's tests", head, tests))
+    for sheet in sheets:
+        sheet.show()
     if chosen.page:
         walker = f"The simulated feet are those of the walker `{stock_policy().digest}`."
-        fill(chosen.page, {**found.markdown(), "walker": walker})
+        fill(chosen.page, {**by_name(sheets), "walker": walker})
     if chosen.figures:
         cause(chosen.figures / "iez_cause.png", simulated, made_of[0])
         cure(chosen.figures / "iez_cure.png", simulated, pairs)
-    document: dict[str, Any] = {name: {"head": head, "rows": rows} for name, (head, rows) in tables.items()}
+    document = {sheet.name: {"head": sheet.headings, "rows": sheet.rows} for sheet in sheets}
     write_json(chosen.json, document)
 
 

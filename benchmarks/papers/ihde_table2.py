@@ -24,8 +24,9 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks._common import options, out, write_json
-from benchmarks.papers._ihde_page import fill, loop_table, setting_table, table_2, variant_table
+from benchmarks._common import options, write_json
+from benchmarks._page import by_name, fill
+from benchmarks.papers._ihde_page import loop_table, setting_table, table_2, variant_table
 from benchmarks.papers._ihde_ways import Job, Params, Way, judge
 from footfall.hdr.hde import Hde2010Params, HdeParams
 from footfall.hdr.ihde import IhdeParams
@@ -204,29 +205,28 @@ def main(arguments: Sequence[str] | None = None) -> None:
     judged = [*ways.values(), *variants.values()]
     found = judge(jobs(scenarios, list(GAITS.values()), seeds, judged), chosen.processes, "judging")
 
-    def by_name(names: Sequence[str], gait: str, first: int = 0) -> dict[str, dict[str, np.ndarray]]:
+    def part(names: Sequence[str], gait: str, first: int = 0) -> dict[str, dict[str, np.ndarray]]:
         return {
             test: {name: found[test, GAITS[gait]][:, first + i] for i, name in enumerate(names)}
             for test in TESTS
         }
 
-    rows = {gait: by_name(list(ways), gait) for gait in GAITS}
-    changed = {gait: by_name(list(variants), gait, len(ways)) for gait in GAITS}
-    tables = {gait: table_2(rows[gait]) for gait in GAITS}
-    tables["settings"] = setting_table(settings_in_words(tuned))
-    tables["decides"] = variant_table(changed["people"], changed["line"])
+    rows = {gait: part(list(ways), gait) for gait in GAITS}
+    changed = {gait: part(list(variants), gait, len(ways)) for gait in GAITS}
+    sheets = [table_2(gait, rows[gait]) for gait in GAITS]
+    sheets += [setting_table(settings_in_words(tuned)), variant_table(changed["people"], changed["line"])]
     looped: np.ndarray | None = None
     if chosen.loop_walks:
         loop = load_scenario("closed-loop")
         units = tuple(range(loop.seed + 500, loop.seed + 500 + chosen.loop_units))
         todo = [Job(loop, loop.seed + i, units, tuple(loop_ways.values())) for i in range(chosen.loop_walks)]
         (looped,) = judge(todo, chosen.processes, "the closed loop").values()
-        tables["loop"] = loop_table(list(loop_ways), looped)
+        sheets.append(loop_table(list(loop_ways), looped))
 
-    for name, table in tables.items():
-        out.print(f"\n[bold]{name}[/bold]\n{table}", highlight=False)
+    for sheet in sheets:
+        sheet.show()
     if chosen.page is not None:
-        fill(chosen.page, tables)
+        fill(chosen.page, by_name(sheets))
     if chosen.figures is not None:
         from benchmarks.papers._ihde_figure import draw
 

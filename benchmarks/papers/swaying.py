@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks._common import options, run_all, write_json
+from benchmarks._page import Sheet, by_name, fill
 from benchmarks.papers._swaying_figure import draw
-from benchmarks.validation._real_page import Sheet, fill
 from footfall.hdr.hdr import HdrParams, HdrTrace, headings, trace
 from footfall.hdr.methods import Reckoning, pdr_track
 from footfall.models.imu import draw_unit, load_spec
@@ -201,12 +201,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sheet.show()
     print(f"De-lagging the twice filtered rate gives the raw one back to {np.degrees(undone):.1e} deg/s.")
     if chosen.page is not None:
-        fill(chosen.page, sheets)
+        fill(chosen.page, by_name(sheets))
     if chosen.figure is not None:
         draw(chosen.figure, [one for one in motions if one.name != SWAYS[1]])  # between its neighbours
     write_json(
         chosen.json,
-        {"undone_deg_s": float(np.degrees(undone)), **{s.mark: [s.headings, *s.rows] for s in sheets}},
+        {"undone_deg_s": float(np.degrees(undone)), **{s.name: [s.headings, *s.rows] for s in sheets}},
     )
 
 

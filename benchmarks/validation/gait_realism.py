@@ -18,12 +18,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
-from benchmarks._common import err, options, run_all, write_json
+from benchmarks._common import err, options, out, run_all, write_json
+from benchmarks._page import by_name, fill
 from benchmarks.validation._gait_figure import draw
 from benchmarks.validation._gait_kinetics import walk_figures
-from benchmarks.validation._gait_page import bounds, insert, markdown, tally, terminal
+from benchmarks.validation._gait_page import bounds, sheets, tally
 from benchmarks.validation._gait_rows import judged
 from benchmarks.validation._gait_statistics import bands, distances, foot_figures
 from benchmarks.validation._gait_strides import BANDWIDTH_HZ, Foot, matched, normalised, read_foot
@@ -34,7 +34,6 @@ from footfall.models.policy import load_policy, stock_policy
 
 FEWEST = 3  # real recordings: fewer have no spread
 FASTEST = 1.7  # m/s, of the walks here
-out = Console(soft_wrap=True, width=max(150, err.width))  # as wide as the widest table
 DRAWN = "1.3"
 # Name of the simulated foot -> its walk and its mount.
 FEET = {
@@ -175,8 +174,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if not simulated:
         sys.exit("no walk came to its end")
     of_real, of_simulated = all_figures(real, simulated)
-    for table in terminal(of_real, of_simulated, walks):
-        out.print(table)
+    tables = sheets(of_real, of_simulated, walks)
+    for table in tables:
+        table.show()
     found = tally(of_real, of_simulated)
     # Recordings faster than any walk here make the spread wide: how it would be without them.
     slow = {name: foot for name, foot in real.items() if of_real[name]["speed_m_s"] <= FASTEST}
@@ -202,8 +202,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     }
     write_json(chosen.json, _plain(document))
     if chosen.docs is not None:
-        tables = markdown(of_real, of_simulated, walks)
-        insert(chosen.docs / "gait.md", f"Walker {policy.digest}. {' '.join(counts)}\n\n{tables}")
+        counted = {"counts": f"Walker {policy.digest}. {' '.join(counts)}"}
+        fill(chosen.docs / "gait.md", counted | by_name(tables))
         name = DRAWN if DRAWN in simulated else next(iter(simulated))
         title = f"One stride of a foot's IMU in the foot's axes, {chosen.bandwidth:g} Hz: simulated over real"
         strides = [normalised(foot) for foot in real.values()]

@@ -24,8 +24,9 @@ from pathlib import Path
 import numpy as np
 from rich.progress import track as progress
 
+from benchmarks._common import out
+from benchmarks._page import Sheet, by_name, fill
 from benchmarks.validation._real import BESIDE, Real, find, rigid_fit
-from benchmarks.validation._real_page import Sheet, fill, out
 from footfall import __version__
 from footfall.errors import InputError
 from footfall.formats.condition import condition
@@ -296,7 +297,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sheet.show()
     out.print(f"* the detectors' constants were chosen on these: {', '.join(TUNED_ON)}", markup=False)
     if chosen.page is not None:
-        fill(chosen.page, made)
+        fill(chosen.page, by_name(made))
     if chosen.figure is not None:
         from benchmarks.validation._real_figure import draw
 

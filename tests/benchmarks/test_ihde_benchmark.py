@@ -78,30 +78,17 @@ def test_each_method_is_tuned_in_its_own_part_of_the_grid(monkeypatch):
     assert (tuned.hde, tuned.ihde, tuned.jimenez, tuned.plus) == tuple(grid[-1] for grid in grids)
 
 
-def test_tables_replace_their_older_selves_and_nothing_else(tmp_path):
-    page = tmp_path / "page.md"
-    page.write_text("# A\n<!-- table one -->\nold\n<!-- end -->\ntext\n<!-- table two -->\n<!-- end -->\n")
-    _ihde_page.fill(page, {"one": "| 1 |", "two": "| 2 |"})
-    once = page.read_text()
-    assert "old" not in once
-    assert once.startswith("# A\n<!-- table one -->\n\n| 1 |\n\n<!-- end -->\ntext\n")
-    _ihde_page.fill(page, {"one": "| 1 |"})
-    assert page.read_text() == once
-    with pytest.raises(SystemExit, match="expected one mark <!-- table three -->, found 0"):
-        _ihde_page.fill(page, {"three": ""})
-
-
 def test_the_tables_say_median_and_spread():
     errors = np.zeros((11, 3))
     errors[:, 0], errors[:, 1] = np.arange(11), 2.0
     by = {test: {"ihde": errors, "no bias": errors} for test in ihde_table2.TESTS}
-    table = _ihde_page.table_2(by).splitlines()
+    table = _ihde_page.table_2("people", by).markdown().splitlines()
     assert table[2].startswith("| **the paper: IEZ** | 8.7 to 9.6 |  | 2.3 to 2.8 |")
     assert table[5] == "| `ihde` |" + " 5.00 (1.00 to 9.00) | 2.0 |" * 3
-    variants = _ihde_page.variant_table(by, by).splitlines()
+    variants = _ihde_page.variant_table(by, by).markdown().splitlines()
     assert variants[3] == "| no bias |" + " 5.00 (1.00 to 9.00) |" * 6
     looped = np.stack([errors, 40 + errors], axis=1)
-    loop = _ihde_page.loop_table(["a", "b"], looped).splitlines()
+    loop = _ihde_page.loop_table(["a", "b"], looped).markdown().splitlines()
     assert loop[2] == "| `a` | 2.0 | 2.0 | 0.0 | 0.0 | 0 of 11 |"
     assert loop[3] == "| `b` | 42.0 | 42.0 | 40.0 | 40.0 | 11 of 11 |"
 

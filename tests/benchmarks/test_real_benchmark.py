@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from benchmarks.speed import long_recording
 from benchmarks.validation import real_recordings
 from benchmarks.validation._real import find, rigid_fit, rigid_rmse
-from benchmarks.validation._real_page import Sheet, fill
 from tests.helpers.commands import write_csv
 from tests.helpers.synthetic_foot import walk
 
@@ -76,7 +75,7 @@ def test_it_measures_prints_and_fills_its_page(folder, tmp_path, capsys, monkeyp
     page, figure, out = tmp_path / "page.md", tmp_path / "tracks.png", tmp_path / "out.json"
     marks = ("recordings", "targets", "methods", "detectors pdr", "detectors iez", "strides", "mechanics")
     marks += ("bias", "clipped", "drift")
-    page.write_text("".join(f"# {mark}\n<!-- {mark} -->\noutdated\n<!-- / -->\n" for mark in marks))
+    page.write_text("".join(f"# {mark}\n<!-- table {mark} -->\noutdated\n<!-- end -->\n" for mark in marks))
     monkeypatch.setattr(real_recordings, "STRIDES", {"xio long": STRIDES})
     arguments = ["--data", folder, "--page", page, "--figure", figure, "--json", out, "--units", 2]
     real_recordings.main([str(argument) for argument in arguments])
@@ -92,12 +91,6 @@ def test_it_measures_prints_and_fills_its_page(folder, tmp_path, capsys, monkeyp
     assert by["gdin 32", "threshold", "pdr"]["rmse_m"] == pytest.approx(0.3 * np.sqrt(8) / 9, abs=0.01)
     assert "lost" not in text
     assert "Strides found less true" in capsys.readouterr().out
-
-
-def test_a_page_without_a_mark_is_told(tmp_path):
-    (tmp_path / "page.md").write_text("nothing")
-    with pytest.raises(SystemExit, match="no mark <!-- a -->"):
-        fill(tmp_path / "page.md", [Sheet("a", "A", ["x"])])
 
 
 def test_an_empty_folder_is_told(tmp_path):

@@ -5,7 +5,6 @@ import pytest
 
 from benchmarks.papers import swaying
 from footfall.hdr.hdr import HdrParams, trace
-from tests.helpers.places import DOCS
 from tests.helpers.synthetic_foot import footfalls
 
 DEG = np.pi / 180
@@ -81,16 +80,3 @@ def test_a_figure_is_drawn_of_short_and_long_walks(tmp_path):
     motions = [stand_in(rng.normal(0, 3 * DEG, n)) for n in (60, 600)]
     swaying.draw(tmp_path / "figure.png", motions)
     assert (tmp_path / "figure.png").stat().st_size > 30_000
-
-
-def test_the_page_has_a_place_for_every_table(tmp_path):
-    page = tmp_path / "swaying.md"
-    page.write_text((DOCS / "swaying.md").read_text(encoding="utf-8"), encoding="utf-8")
-    sheets = [
-        swaying.stage_sheet([stand_in(np.zeros(50))]),
-        swaying.gain_sheet(),
-        swaying.error_sheet(np.ones((3, 1, 1, 1, 3, 2))),
-    ]
-    swaying.fill(page, sheets)
-    text = page.read_text(encoding="utf-8")
-    assert all(sheet.markdown() in text for sheet in sheets)
