@@ -28,8 +28,8 @@ from footfall.scenarios.judge.score import compare
 from footfall.scenarios.run import start_pose
 from footfall.scenarios.scenario import Scenario
 from footfall.simulate.cache import cached_walk
+from footfall.simulate.plan import versions
 from footfall.simulate.record import record
-from footfall.simulate.walking import versions
 
 J = TypeVar("J")
 R = TypeVar("R")

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path as File
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
@@ -18,11 +19,10 @@ from footfall.models.imu import TemperatureProfile, load_spec, stock_specs
 from footfall.models.subject import SHOES, SUBJECTS, Subject
 from footfall.scenarios.path import Path, PathSpec, build_path
 from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height
+from footfall.simulate.plan import PHYSICS_STEP, Disturbance, Gait, Pace, Plan, Stop
 from footfall.simulate.record import BIAS_TIME
 from footfall.simulate.truth import divisor
-from footfall.simulate.walker.steering import Pace, Stop
-from footfall.simulate.walking import PHYSICS_STEP, Plan
-from footfall.toml import Strict, read_toml
+from footfall.toml import Strict, checked, parse_toml
 
 STOCK = File(__file__).parent / "stock"
 
@@ -68,16 +68,19 @@ _WanderTimeS = Annotated[
 
 
 class GaitTable(Strict):
-    """How the path is walked. `variability` 1 is that of people, 0 a metronome's; the others: its parts."""
+    """How the path is walked: `Gait`, whose wander may be another from walk to walk."""
 
     pace_m_s: float = Field(ge=0.7, le=1.7)
-    variability: float = Field(1.0, ge=0, le=1.5)
-    placement_variability: float = Field(1.0, ge=0, le=2)
-    cadence_variability: float = Field(1.0, ge=0, le=2)
-    toe_out_variability: float = Field(1.0, ge=0, le=2)
-    action_noise: float = Field(0.0, ge=0, le=0.3)
-    wander_m: _WanderM = (0.0,)
-    wander_time_s: _WanderTimeS = (4.0,)
+    variability: float = Field(Gait.variability, ge=0, le=1.5)
+    placement_variability: float = Field(Gait.placement_variability, ge=0, le=2)
+    cadence_variability: float = Field(Gait.cadence_variability, ge=0, le=2)
+    toe_out_variability: float = Field(Gait.toe_out_variability, ge=0, le=2)
+    action_noise: float = Field(Gait.action_noise, ge=0, le=0.3)
+    wander_m: _WanderM = (Gait.wander_m,)
+    wander_time_s: _WanderTimeS = (Gait.wander_time_s,)
+
+
+_IN_TURN = ("wander_m", "wander_time_s")  # what of the gait is used in turn from walk to walk
 
 
 class StopTable(Strict):
@@ -98,7 +101,7 @@ class DisturbanceTable(Strict):
     """Pushes at the trunk: how well does the walker stand them?"""
 
     push_Ns: float = Field(gt=0, le=30)
-    every_s: float = Field(10.0, ge=1)
+    every_s: float = Field(Disturbance.every_s, ge=1)
 
 
 class TemperatureTable(Strict):
@@ -125,8 +128,8 @@ class SensorTable(Strict):
 
     imu: Annotated[str, Field(min_length=1)]
     mount: str = "instep"
-    rate_hz: float = Field(200.0, ge=50)
-    calibration_s: float = Field(30.0, ge=0, le=600)
+    rate_hz: float = Field(Plan.rate_hz, ge=50)
+    calibration_s: float = Field(Plan.calibration_s, ge=0, le=600)
     bias_time_s: float = Field(BIAS_TIME, gt=0, le=600)
     bias_shift_deg_s: float = Field(0.0, ge=0, le=10)
 
@@ -162,70 +165,92 @@ class ScenarioFile(Strict):
 
 
 @dataclass(frozen=True)
-class Scenario:
-    """Everything that a run needs to know beforehand.
+class ScenarioDocument:
+    """A scenario as it was read, not checked yet.
 
     Attributes
     ----------
     name : a stock scenario's, or its file's without the ending
-    description : one line for people
-    path : where to walk
-    cell : m, of the terrain's grid
-    subjects : used in turn from walk to walk
-    stops : pauses, in walking order
-    pace : m/s, asked of the walker on straights; paces : changes of it, in walking order
-    variability : of the gait, 1 = that of people; placement_variability, cadence_variability and
-        toe_out_variability : of where and when the feet land and how far they turn out, each times the former
-    action_noise : SD of the noise on the walker's actions
-    wander, wander_time : m and s, slow lateral wander of the steering's aim; each used in turn
-    push, push_every : N s and s, pushes at the trunk; 0: none
-    temperatures : of the air around the sensor from the recording's start, used in turn from walk to walk
-    imu : stock name or path of a data sheet
-    mount : name of a mounting on the shoe
-    rate_hz : of truth and recording
-    calibration : s of standing before the first footfall
-    bias_time : s, T_bias: of it, over which the static bias is averaged
-    bias_shift : rad/s, gyro bias about the vertical that appears with the first step
-    seed : of walk 0; walks : how many by default
-    units : seeds of sensors, used in turn; None: each walk's own seed
+    folder : where the files lie that it names
+    table : TOML's tables
+    source : the file that errors speak of; the name where there is none
     """
 
     name: str
-    description: str
+    folder: File
+    table: Mapping[str, Any]
+    source: str = ""
+
+    def changed(self, table: str, **keys: Any) -> ScenarioDocument:
+        """Another document, which has these keys in one of its tables."""
+        return replace(self, table={**self.table, table: {**self.table.get(table, {}), **keys}})
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """What stands in a scenario's file, and what was built from it.
+
+    A setting has the name that it has in the file: `scenario.gait.pace_m_s`, `scenario.file.terrain.cell_m`.
+
+    Attributes
+    ----------
+    document : what it was built from
+    file : its content, checked
+    path : where to walk
+    subjects : used in turn from walk to walk
+    stops, paces : pauses and changes of pace, in walking order
+    temperatures : of the air around the sensor from the recording's start, used in turn from walk to walk
+    imu : stock name or path of a data sheet
+    """
+
+    document: ScenarioDocument
+    file: ScenarioFile
     path: Path
-    cell: float
     subjects: tuple[Subject, ...]
     stops: tuple[Stop, ...]
-    pace: float
     paces: tuple[Pace, ...]
-    variability: float
-    placement_variability: float
-    cadence_variability: float
-    toe_out_variability: float
-    action_noise: float
-    wander: tuple[float, ...]
-    wander_time: tuple[float, ...]
-    push: float
-    push_every: float
     temperatures: tuple[TemperatureProfile, ...]
     imu: str
-    mount: str
-    rate_hz: float
-    calibration: float
-    bias_time: float
-    bias_shift: float
-    seed: int
-    walks: int
-    units: tuple[int, ...] | None
+
+    @property
+    def name(self) -> str:
+        """A stock scenario's, or its file's without the ending."""
+        return self.document.name
+
+    @property
+    def gait(self) -> GaitTable:
+        """How it is walked."""
+        return self.file.gait
+
+    @property
+    def sensor(self) -> SensorTable:
+        """What is on the shoe, and how it is used."""
+        return self.file.sensor
+
+    @property
+    def seeds(self) -> SeedTable:
+        """Of walks and units."""
+        return self.file.seeds
+
+    def changed(self, table: str, **keys: Any) -> Scenario:
+        """Another scenario, which has these keys in one of its tables: `changed("gait", wander_m=0.2)`.
+
+        Raises
+        ------
+        InputError
+            As `build_scenario`.
+        """
+        return build_scenario(self.document.changed(table, **keys))
 
     @cached_property
     def terrain(self) -> Terrain | None:
         """The ground, or None where the path is level; built at the first call."""
-        return build_terrain(self.path, self.cell)
+        return build_terrain(self.path, self.file.terrain.cell_m)
 
     def unit_seed(self, walk: int) -> int:
         """Seed of the sensor that is worn on a walk."""
-        return self.units[walk % len(self.units)] if self.units else self.seed + walk
+        units = self.seeds.units
+        return units[walk % len(units)] if units else self.seeds.base + walk
 
     def temperature_of(self, walk: int) -> TemperatureProfile:
         """What the sensor goes through on walk number `walk` (from 0)."""
@@ -233,31 +258,30 @@ class Scenario:
 
     def unit_bias_shift(self, unit_seed: int) -> float:
         """The bias shift (rad/s, left positive) of a unit: its seed decides the side."""
-        return self.bias_shift if unit_seed % 2 else -self.bias_shift
+        shift = math.radians(self.sensor.bias_shift_deg_s)
+        return shift if unit_seed % 2 else -shift
+
+    def gait_of(self, walk: int) -> Gait:
+        """How walk number `walk` (from 0) is walked."""
+        own = {key: getattr(self.gait, key)[walk % len(getattr(self.gait, key))] for key in _IN_TURN}
+        return Gait(**(self.gait.model_dump() | own))
 
     def plan(self, walk: int) -> Plan:
         """What the simulator needs for walk number `walk` (from 0)."""
+        pushes = self.file.disturbance
         return Plan(
             name=self.name,
             route=self.path.route,
             subject=self.subjects[walk % len(self.subjects)],
-            mount=MOUNTS[self.mount],
+            mount=MOUNTS[self.sensor.mount],
             ground=self.terrain,
-            pace=self.pace,
+            gait=self.gait_of(walk),
             paces=self.paces,
             stops=self.stops,
-            variability=self.variability,
-            placement_variability=self.placement_variability,
-            cadence_variability=self.cadence_variability,
-            toe_out_variability=self.toe_out_variability,
-            action_noise=self.action_noise,
-            wander=self.wander[walk % len(self.wander)],
-            wander_time=self.wander_time[walk % len(self.wander_time)],
-            push=self.push,
-            push_every=self.push_every,
-            calibration=self.calibration,
-            rate_hz=self.rate_hz,
-            seed=self.seed + walk,
+            disturbance=None if pushes is None else Disturbance(**pushes.model_dump()),
+            calibration_s=self.sensor.calibration_s,
+            rate_hz=self.sensor.rate_hz,
+            seed=self.seeds.base + walk,
         )
 
 
@@ -274,58 +298,61 @@ def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
     InputError
         Neither a stock name nor a file; or what cannot be walked, with file, key, value and reason.
     """
+    return build_scenario(read_document(name_or_path))
+
+
+def read_document(name_or_path: str | os.PathLike[str]) -> ScenarioDocument:
+    """What stands in the file of a stock scenario, by name, or in anyone's, by path.
+
+    Raises
+    ------
+    InputError
+        Neither a stock name nor a file; or a file that is not TOML.
+    """
     if (name := os.fspath(name_or_path)) in stock_scenarios():
         file = STOCK / f"{name}.toml"
     elif not (file := File(name)).is_file():
         stock = ", ".join(stock_scenarios())
         raise InputError(f"scenario {name!r}: neither a stock scenario ({stock}) nor a TOML file that exists")
-    content = read_toml(file, ScenarioFile)
+    return ScenarioDocument(file.stem, file.parent, parse_toml(file), str(file))
+
+
+def build_scenario(document: ScenarioDocument) -> Scenario:
+    """Check a document and build what stands in it.
+
+    Raises
+    ------
+    InputError
+        What cannot be walked, with file, key, value and reason.
+    """
+    source = document.source or document.name
+    content = checked(document.table, ScenarioFile, source)
     try:
-        return _scenario(file, content)
+        return _built(document, content)
     except InputError as error:
-        raise error.about(file) from None
+        raise error.about(source) from None
 
 
-def _scenario(file: File, content: ScenarioFile) -> Scenario:
-    path = build_path(content.path)
+def _built(document: ScenarioDocument, content: ScenarioFile) -> Scenario:
+    path, sensor = build_path(content.path), content.sensor
     require_one_height(path)
-    gait, sensor, seeds = content.gait, content.sensor, content.seeds
     if sensor.mount not in MOUNTS:
         raise InputError(f"sensor.mount = {sensor.mount!r}: expected one of {', '.join(MOUNTS)}")
     try:
         divisor(PHYSICS_STEP, sensor.rate_hz)
     except InputError as error:
         raise error.about("sensor.rate_hz") from None
-    imu = sensor.imu if sensor.imu in stock_specs() else str(file.parent / sensor.imu)
+    imu = sensor.imu if sensor.imu in stock_specs() else str(document.folder / sensor.imu)
     load_spec(imu)
     return Scenario(
-        name=file.stem,
-        description=content.description,
+        document=document,
+        file=content,
         path=path,
-        cell=content.terrain.cell_m,
         subjects=tuple(_subject(i, entry) for i, entry in enumerate(content.subjects)),
         stops=_stops(content.stops, path.route.length),
-        pace=gait.pace_m_s,
         paces=_paces(content.paces, path.route.length),
-        variability=gait.variability,
-        placement_variability=gait.placement_variability,
-        cadence_variability=gait.cadence_variability,
-        toe_out_variability=gait.toe_out_variability,
-        action_noise=gait.action_noise,
-        wander=gait.wander_m,
-        wander_time=gait.wander_time_s,
-        push=content.disturbance.push_Ns if content.disturbance else 0.0,
-        push_every=content.disturbance.every_s if content.disturbance else Plan.push_every,
         temperatures=_temperatures(content.temperature),
         imu=imu,
-        mount=sensor.mount,
-        rate_hz=sensor.rate_hz,
-        calibration=sensor.calibration_s,
-        bias_time=sensor.bias_time_s,
-        bias_shift=math.radians(sensor.bias_shift_deg_s),
-        seed=seeds.base,
-        walks=seeds.walks,
-        units=seeds.units,
     )
 
 
@@ -339,7 +366,7 @@ def _stops(tables: tuple[StopTable, ...], length: float) -> tuple[Stop, ...]:
                 f"{key} = {value:g}: expected at least 3 m beyond the stop (or the start) before it and "
                 f"before the path's end at {length:g} m"
             )
-    return tuple(Stop(table.at_m, table.for_s) for table in tables)
+    return tuple(Stop(**table.model_dump()) for table in tables)
 
 
 def _paces(tables: tuple[PaceTable, ...], length: float) -> tuple[Pace, ...]:
@@ -351,7 +378,7 @@ def _paces(tables: tuple[PaceTable, ...], length: float) -> tuple[Pace, ...]:
                 f"paces.{i}.at_m = {after:g}: expected beyond the change (or the start) before it at "
                 f"{before:g} m and before the path's end at {length:g} m"
             )
-    return tuple(Pace(table.at_m, table.m_s) for table in tables)
+    return tuple(Pace(**table.model_dump()) for table in tables)
 
 
 def _temperatures(entry: TemperatureTable | tuple[TemperatureTable, ...]) -> tuple[TemperatureProfile, ...]:

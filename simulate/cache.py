@@ -11,8 +11,9 @@ from footfall.errors import InputError
 from footfall.identity import digest_of
 from footfall.models.policy import Policy, stock_policy
 from footfall.simulate.identity import source_digest
+from footfall.simulate.plan import Plan, versions
 from footfall.simulate.walk import Walk, read_walk, write_walk
-from footfall.simulate.walking import Plan, versions, walk
+from footfall.simulate.walking import walk
 
 
 def cache_folder() -> Path:

@@ -15,7 +15,7 @@ from footfall.models.body import MOUNTS, Mount
 from footfall.models.policy import Policy
 
 if TYPE_CHECKING:
-    from footfall.simulate.walking import Plan
+    from footfall.simulate.plan import Plan
 
 
 def walk_identity(plan: Plan, policy: Policy) -> WalkIdentity:

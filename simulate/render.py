@@ -10,8 +10,9 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.models.policy import stock_policy
 from footfall.simulate.draw import QUARTER_VIEW, SIDE_VIEW, Painter, Stage, Window
+from footfall.simulate.plan import Plan
 from footfall.simulate.walker.walkers import CONTROL_INTERVAL
-from footfall.simulate.walking import Plan, stroll
+from footfall.simulate.walking import stroll
 from footfall.tables import replacing
 
 STRIP_FRAMES, STRIP_EVERY = 7, 5  # control steps

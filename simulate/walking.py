@@ -5,32 +5,26 @@ The physics moves the 1.75 m body (models.subject); what comes out is stretched 
 
 from __future__ import annotations
 
-import platform
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
-from importlib.metadata import version
+from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 
-import footfall
 from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
 from footfall.models import body
-from footfall.models.body import Ground, Mount, build_body
+from footfall.models.body import build_body
 from footfall.models.ground import ground_lookup
 from footfall.models.policy import Policy, stock_policy
-from footfall.models.route import Route
-from footfall.models.subject import Subject
 from footfall.simulate.identity import walk_identity
+from footfall.simulate.plan import PHYSICS_STEP, Plan, Stop, shrunk, versions
 from footfall.simulate.truth import ImuTruth, at_rest, divisor, imu_truth, runs
 from footfall.simulate.walk import TrueFootfalls, Walk
 from footfall.simulate.walker.disturbance import Push, Pusher, pushes
-from footfall.simulate.walker.steering import Pace, Pursuit, Stop, StrayError, pace_along
+from footfall.simulate.walker.steering import Pursuit, StrayError, pace_along
 from footfall.simulate.walker.walkers import N_ACTION, Trace, Walkers
 from footfall.streams import stream
 
-PHYSICS_STEP = 0.001  # s, of the subject's time
 SUBSTEPS = 30  # physics steps of a control step
 STAND_S = 16.0  # s of standing, to come to rest, before the record begins
 END_STAND_S = 5.0  # s of standing at the end
@@ -43,78 +37,6 @@ _SETTLING = 20.0
 
 class FallError(InputError):
     """The walker fell."""
-
-
-@dataclass(frozen=True)
-class Plan:
-    """Everything that determines a walk.
-
-    Attributes
-    ----------
-    name : of the scenario, for messages and provenance
-    route : where to walk; ground : level when None
-    pace : m/s commanded on straights; paces : changes of it on the way, in walking order
-    stops : pauses on the way, in walking order
-    variability : of the gait, 1 = that of people; placement_variability, cadence_variability and
-        toe_out_variability : of where and when the feet land and how far they turn out, each times the former
-    action_noise : SD of the noise on the policy's action
-    wander, wander_time : m and s, slow lateral wander of the aim
-    calibration : s of standing before the first step
-    push, push_every : N s and s; pushes at the trunk into random directions from the first step on: the only
-        external force there can be, off by default
-    rate_hz : of the truth; divides 1 kHz
-    """
-
-    name: str
-    route: Route
-    subject: Subject = field(default_factory=Subject)
-    mount: Mount = field(default_factory=Mount)
-    ground: Ground | None = None
-    pace: float = 1.3
-    paces: tuple[Pace, ...] = ()
-    stops: tuple[Stop, ...] = ()
-    variability: float = 1.0
-    placement_variability: float = 1.0
-    cadence_variability: float = 1.0
-    toe_out_variability: float = 1.0
-    action_noise: float = 0.0
-    wander: float = 0.0
-    wander_time: float = 4.0
-    calibration: float = 30.0
-    push: float = 0.0
-    push_every: float = 10.0
-    rate_hz: float = 200.0
-    seed: int = 1
-
-
-def versions() -> dict[str, str]:
-    """What a walk depends on besides its plan."""
-    return {
-        "footfall": footfall.__version__,
-        "mujoco": mujoco.__version__,
-        "numpy": np.__version__,
-        "scipy": version("scipy"),
-        "python": platform.python_version(),
-    }
-
-
-def _shrunk(plan: Plan) -> Plan:
-    """The plan in the units of the simulated body: lengths over s, times over sqrt(s)."""
-    s, t = plan.subject.scale, plan.subject.time_scale
-    route, ground = plan.route, plan.ground
-    small = Route(route.s / s, route.x / s, route.y / s, route.z / s, route.heading, route.curvature * s)
-    if ground is not None:
-        ground = Ground(ground.x0 / s, ground.y0 / s, ground.cell / s, ground.heights / s)
-    return replace(
-        plan,
-        route=small,
-        ground=ground,
-        pace=plan.pace / t,
-        paces=tuple(Pace(pace.distance / s, pace.speed / t) for pace in plan.paces),
-        stops=tuple(Stop(stop.distance / s, stop.duration / t) for stop in plan.stops),
-        wander=plan.wander / s,
-        wander_time=plan.wander_time / t,
-    )
 
 
 @dataclass(frozen=True)
@@ -160,7 +82,7 @@ class Outing:
     """
 
     def __init__(self, plan: Plan, gains: np.ndarray, *, stand: float) -> None:
-        subject, small = plan.subject, _shrunk(plan)
+        subject, gait, small = plan.subject, plan.gait, shrunk(plan)
         route, step = small.route, PHYSICS_STEP / subject.time_scale
         sloping = small.ground is not None
         model = build_body(subject.build, timestep=step, mount=plan.mount, sloping=sloping)
@@ -176,10 +98,10 @@ class Outing:
         last = Stop(route.length, END_STAND_S / subject.time_scale)
         self._pursuit = Pursuit(
             route,
-            pace_along(route, small.pace, small.paces),
+            pace_along(route, small.gait.pace_m_s, small.paces),
             (first, *small.stops, last),
-            wander=small.wander,
-            wander_time=small.wander_time,
+            wander=small.gait.wander_m,
+            wander_time=small.gait.wander_time_s,
             dt=SUBSTEPS * step,
             rng=stream(plan.seed, "path wander"),
         )
@@ -190,11 +112,11 @@ class Outing:
             heading=route.heading[:1],
             position=np.array([[route.x[0], route.y[0], route.z[0]]]),
             standing=np.ones(1, dtype=bool),
-            variability=plan.variability
-            * np.array([[plan.placement_variability, plan.cadence_variability, plan.toe_out_variability]]),
+            variability=gait.variability
+            * np.array([[gait.placement_variability, gait.cadence_variability, gait.toe_out_variability]]),
             habits=[subject.habits],
         )
-        waiting = first.duration + last.duration + sum(stop.duration + _SETTLING for stop in small.stops) + 20
+        waiting = first.for_s + last.for_s + sum(stop.for_s + _SETTLING for stop in small.stops) + 20
         self.limit = int((route.length / _SLOWEST + waiting) / (SUBSTEPS * step))
         self.steer()
 
@@ -243,7 +165,7 @@ def stroll(plan: Plan, policy: Policy, *, stand: float | None = None) -> Iterato
         The walk did not reach its end.
     """
     noise, at = stream(plan.seed, "action noise"), 0.0
-    stand = STAND_S + plan.calibration if stand is None else stand
+    stand = STAND_S + plan.calibration_s if stand is None else stand
     outing = Outing(plan, policy.feedback_gains, stand=stand)
     walkers, interval = outing.walkers, SUBSTEPS * PHYSICS_STEP
     # The simulated body weighs something else, and its speeds are the subject's over `time_scale`.
@@ -254,13 +176,13 @@ def stroll(plan: Plan, policy: Policy, *, stand: float | None = None) -> Iterato
             if outing.finished:
                 return
             action, at = policy(walkers.observe()), outing.progress
-            if plan.action_noise:
-                action = action + plan.action_noise * noise.standard_normal((1, N_ACTION))
+            if plan.gait.action_noise:
+                action = action + plan.gait.action_noise * noise.standard_normal((1, N_ACTION))
             trace = walkers.step(action, pusher.force(count * interval, share))
             if walkers.fallen()[0]:
                 raise FallError(
                     f"{plan.name}: the walker fell at {at:.0f} m ({count * SUBSTEPS * PHYSICS_STEP:.0f} s, "
-                    f"subject {plan.subject.name}, seed {plan.seed}, pace {plan.pace:g} m/s)"
+                    f"subject {plan.subject.name}, seed {plan.seed}, pace {plan.gait.pace_m_s:g} m/s)"
                 )
             yield Moment(walkers, trace, at, outing)
             outing.steer()
@@ -308,8 +230,9 @@ def _truth(record: _Record, factor: int) -> tuple[ImuTruth, np.ndarray, np.ndarr
 
 def planned_pushes(plan: Plan, until: float) -> tuple[Push, ...]:
     """The pushes of a plan in the first `until` seconds of its record, from the first step on."""
-    rng = stream(plan.seed, "pushes")
-    return pushes(plan.push, plan.push_every, first=plan.calibration, until=until, rng=rng)
+    if plan.disturbance is None:
+        return ()
+    return pushes(plan.disturbance, first=plan.calibration_s, until=until, rng=stream(plan.seed, "pushes"))
 
 
 def _told_pushes(plan: Plan, until: float) -> dict[str, list[list[float]]]:
@@ -355,7 +278,7 @@ def walk(
         rest[first:last] = True
     rows = stances.mean(axis=1).astype(int)
     # The first stance is the stand before the walk: its footfall is the end of the calibration.
-    rows[0] = min(int(plan.calibration / interval), stances[0, 1] - 1)
+    rows[0] = min(int(plan.calibration_s / interval), stances[0, 1] - 1)
     return Walk(
         t=t,
         position=truth.position,
@@ -368,11 +291,11 @@ def walk(
         footfalls=TrueFootfalls(t[rows], truth.position[rows], heading_of(truth.quaternion[rows])),
         meta={
             **walk_identity(plan, policy).as_dict(),
-            "pace": plan.pace,
+            "pace_m_s": plan.gait.pace_m_s,
             "rate_hz": plan.rate_hz,
-            "calibration_s": plan.calibration,
+            "calibration_s": plan.calibration_s,
             "ends": "standing" if record.stands else "in mid-gait",
-            **({"paces_m_m_s": [[pace.distance, pace.speed] for pace in plan.paces]} if plan.paces else {}),
+            **({"paces_m_m_s": [[pace.at_m, pace.m_s] for pace in plan.paces]} if plan.paces else {}),
             **_told_pushes(plan, t[-1]),
             "versions": versions(),
         },

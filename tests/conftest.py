@@ -28,7 +28,7 @@ def real_data() -> Path:
 def short_plan():  # type: ignore[no-untyped-def]
     """A 40 m walk with one 90 degree corner, people's variability, 26 s of calibration."""
     from footfall.scenarios.path import PathSpec, build_path
-    from footfall.simulate.walking import Plan
+    from footfall.simulate.plan import Gait, Plan
 
     elements = [
         {"kind": "straight", "length_m": 20.0},
@@ -36,7 +36,7 @@ def short_plan():  # type: ignore[no-untyped-def]
         {"kind": "straight", "length_m": 20.0},
     ]
     path = build_path(PathSpec.model_validate({"elements": elements}))
-    return Plan(name="short", route=path.route, pace=1.3, calibration=26.0, wander=0.1, seed=5)
+    return Plan(name="short", route=path.route, gait=Gait(wander_m=0.1), calibration_s=26.0, seed=5)
 
 
 @pytest.fixture(scope="session")

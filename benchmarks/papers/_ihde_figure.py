@@ -25,7 +25,7 @@ _SHOWN = ("iez", "hde", "ihde", "ihde-plus")
 
 def _result(scenario: Scenario, seed: int, tuned: Tuned) -> Result:
     """One walk with the unit of its seed, navigated as tuned."""
-    result = perform(Task(scenario, seed - scenario.seed, seed, seed, seed, scenario.imu, ("pdr",)))
+    result = perform(Task(scenario, seed - scenario.seeds.base, seed, seed, seed, scenario.imu, ("pdr",)))
     given, ways = reckoning(scenario, result.walk, result.recording), tuned.ways()
     tracks: dict[str, Track] = {name: ways[name].track(given) for name in _SHOWN}
     return replace(result, tracks=tracks)

@@ -92,7 +92,7 @@ class Job:
 
 def navigate(job: Job) -> np.ndarray | str:
     """(units, ways, 3) return error (%), mean and final heading error (deg); or why the walk did not end."""
-    scenario, number = job.scenario, job.seed - job.scenario.seed
+    scenario, number = job.scenario, job.seed - job.scenario.seeds.base
     try:
         walk = cached_walk(scenario.plan(number))
     except InputError as error:
@@ -124,7 +124,7 @@ def judge(jobs: Sequence[Job], processes: int, label: str) -> dict[tuple[str, fl
     """
     found: dict[tuple[str, float], list[np.ndarray]] = {}
     for job, result in zip(jobs, run_all(navigate, jobs, processes, label), strict=True):
-        rows = found.setdefault((job.scenario.name, job.scenario.variability), [])
+        rows = found.setdefault((job.scenario.name, job.scenario.gait.variability), [])
         if isinstance(result, str):
             err.print(f"[red]left out:[/red] {result}")
         else:

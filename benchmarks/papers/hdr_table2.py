@@ -134,14 +134,14 @@ def sides(scenario: Scenario, chosen: argparse.Namespace) -> tuple[list[Wearing]
     SystemExit
         The two sides share a walk seed or a unit.
     """
-    first = scenario.seed if chosen.walk_seed is None else chosen.walk_seed
+    first = scenario.seeds.base if chosen.walk_seed is None else chosen.walk_seed
     drawn = range(chosen.unit_seed, chosen.unit_seed + chosen.units)
     judged = shared_out(scenario, chosen.walks, first, drawn, chosen.noises)
-    if scenario.units:
+    if scenario.seeds.units:
         judged = [replace(one, units=(*one.units, scenario.unit_seed(one.number))) for one in judged]
     seeds = range(chosen.tuning_unit_seed, chosen.tuning_unit_seed + chosen.tuning_units)
     tuning = shared_out(scenario, chosen.tuning_walks, chosen.tuning_walk_seed, seeds)
-    reported = {*drawn, *(scenario.units or ())}
+    reported = {*drawn, *(scenario.seeds.units or ())}
     if reported & set(seeds) or {one.seed for one in judged} & {one.seed for one in tuning}:
         raise SystemExit("tuning and judging share a walk seed or a unit: choose other seeds")
     return tuning, judged
@@ -175,7 +175,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     ]
     scenarios = {one.name: one for one in map(load_scenario, chosen.scenarios)}
     first = next(iter(scenarios))
-    moved = {f"{first}, {mount}": replace(scenarios[first], mount=mount) for mount in chosen.mounts}
+    moved = {f"{first}, {mount}": scenarios[first].changed("sensor", mount=mount) for mount in chosen.mounts}
     todo = {title: sides(scenario, chosen) for title, scenario in (scenarios | moved).items()}
     (tuned_on,) = reckoned(todo[first][0], chosen.processes, f"tuning on {first}")
     tuning = study(tuned_on, grid)
@@ -201,7 +201,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if best == HdrParams():
             methods.popitem()
         scenario = (scenarios | moved)[title]
-        own = np.isin([case.unit for case in found.cases], scenario.units or ())
+        own = np.isin([case.unit for case in found.cases], scenario.seeds.units or ())
         judged[title] = judge(own, methods, title)
         if title == first:
             fit = ~own & found.in_range

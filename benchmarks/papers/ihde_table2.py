@@ -134,7 +134,7 @@ def jobs(
 ) -> list[Job]:
     """Every test with every gait and seed; each walk wears the unit of its seed."""
     return [
-        Job(replace(scenarios[test], variability=gait), seed, (seed,), tuple(ways))
+        Job(scenarios[test].changed("gait", variability=gait), seed, (seed,), tuple(ways))
         for gait in gaits
         for test in TESTS
         for seed in seeds
@@ -218,8 +218,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     looped: np.ndarray | None = None
     if chosen.loop_walks:
         loop = load_scenario("closed-loop")
-        units = tuple(range(loop.seed + 500, loop.seed + 500 + chosen.loop_units))
-        todo = [Job(loop, loop.seed + i, units, tuple(loop_ways.values())) for i in range(chosen.loop_walks)]
+        units = tuple(range(loop.seeds.base + 500, loop.seeds.base + 500 + chosen.loop_units))
+        todo = [
+            Job(loop, loop.seeds.base + i, units, tuple(loop_ways.values())) for i in range(chosen.loop_walks)
+        ]
         (looped,) = judge(todo, chosen.processes, "the closed loop").values()
         sheets.append(loop_table(list(loop_ways), looped))
 

@@ -29,8 +29,8 @@ from footfall.scenarios.path import PathSpec, build_path
 from footfall.scenarios.run import start_pose
 from footfall.scenarios.scenario import Scenario, load_scenario
 from footfall.simulate.cache import cached_walk
+from footfall.simulate.plan import Plan
 from footfall.simulate.record import record
-from footfall.simulate.walking import Plan
 
 SWAYS = ("sway at the footfall rate", "people's wander", "wide, slow sway")
 LEAD = {"kind": "straight", "length_m": 80.0}
@@ -187,7 +187,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         for one in motions
     )
     jobs = [
-        (scenario, number, scenario.seed + number + len(SWAYS) * k)
+        (scenario, number, scenario.seeds.base + number + len(SWAYS) * k)
         for number in range(len(SWAYS))
         for k in range(chosen.walks)
     ]

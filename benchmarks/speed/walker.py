@@ -31,11 +31,12 @@ from benchmarks._common import err, options, out, run_all, shortened, write_json
 from footfall.models.policy import Policy
 from footfall.scenarios.scenario import load_scenario
 from footfall.simulate import walking as journey
+from footfall.simulate.plan import PHYSICS_STEP, Plan
 from footfall.simulate.walker import walkers
 from footfall.simulate.walker.steering import Pursuit
 from footfall.simulate.walker.variability import Variability
 from footfall.simulate.walker.walkers import Walkers
-from footfall.simulate.walking import PHYSICS_STEP, SUBSTEPS, Plan, walk
+from footfall.simulate.walking import SUBSTEPS, walk
 
 MINUTES, TARGET_S, TARGET_SHARE = 20, 45, 0.85
 PHYSICS = "MuJoCo"
@@ -194,7 +195,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
     plan = load_scenario(chosen.scenario).plan(0)
     # Without the long first stand, standing has about the share that it has in 20 minutes.
-    plan = replace(plan, route=shortened(plan.route, chosen.metres), calibration=0.0)
+    plan = replace(plan, route=shortened(plan.route, chosen.metres), calibration_s=0.0)
     level = replace(plan, ground=None, route=replace(plan.route, z=np.zeros_like(plan.route.z)))
     plans = {"level": level} | ({"slopes": plan} if plan.ground is not None else {})
     with err.status("walking"):

@@ -7,7 +7,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from benchmarks.validation._gait_walks import Motion
 from footfall.conventions import heading_of
-from footfall.simulate.walking import PHYSICS_STEP
+from footfall.simulate.plan import PHYSICS_STEP
 
 LOADED = 0.03  # body weights: less is no support
 SHORTEST_S = 0.25  # of a stance; shorter contacts are scuffs

@@ -14,8 +14,9 @@ from footfall.models.body import MOUNTS, Mount
 from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import SUBJECTS
 from footfall.scenarios.path import PathSpec, build_path
+from footfall.simulate.plan import PHYSICS_STEP, Gait, Plan
 from footfall.simulate.truth import imu_truth
-from footfall.simulate.walking import PHYSICS_STEP, STAND_S, Plan, stroll
+from footfall.simulate.walking import STAND_S, stroll
 
 WANDER_M = 0.10  # as in the stock scenarios
 REST_S = 2.0  # of standing before the first step
@@ -66,9 +67,8 @@ def walk_straight(case: Case, metres: float, policy: Policy | None = None) -> Mo
         route=build_path(spec).route,
         subject=subject,
         mount=Mount(position=(0.0, 0.0, 0.0), euler_deg=(0.0, 0.0, 0.0)),
-        pace=case.pace,
-        wander=WANDER_M,
-        calibration=REST_S,
+        gait=Gait(pace_m_s=case.pace, wander_m=WANDER_M),
+        calibration_s=REST_S,
         seed=case.seed,
     )
     kept: list[tuple[np.ndarray, ...]] = []

@@ -20,8 +20,9 @@ from benchmarks._common import options, out, run_all, shortened, write_json
 from footfall.models.imu import draw_unit, load_spec
 from footfall.pdr.strapdown import integrate
 from footfall.scenarios.scenario import load_scenario
+from footfall.simulate.plan import Plan
 from footfall.simulate.record import record
-from footfall.simulate.walking import Plan, walk
+from footfall.simulate.walking import walk
 
 TARGET_MM = {1000.0: 1.0, 200.0: 2.0}
 AT = 1200.0  # s

@@ -23,8 +23,9 @@ from footfall.errors import InputError
 from footfall.models.route import Route
 from footfall.scenarios.scenario import Scenario, load_scenario, stock_scenarios
 from footfall.simulate.cache import cached_walk
+from footfall.simulate.plan import Disturbance, Plan
 from footfall.simulate.walk import TrueFootfalls
-from footfall.simulate.walking import Plan, walk
+from footfall.simulate.walking import walk
 
 TIGHT, CLEAR = 1 / 20, 5.0  # 1/m and m: a stretch is steady that far from curvature above this
 MOST = 4.0  # m of path that a stride may cover
@@ -105,12 +106,13 @@ def measure(plan: Plan, use_cache: bool) -> Gait:
 def plans(scenario: Scenario, seeds: int, first: int | None, metres: float | None, push: float) -> list[Plan]:
     """One plan a seed; the scenario's subjects in turn."""
     made = [scenario.plan(number) for number in range(seeds)]
-    start = scenario.seed if first is None else first
+    start = scenario.seeds.base if first is None else first
     changed = []
     for number, plan in enumerate(made):
         route = shortened(plan.route, metres)
-        stops = tuple(stop for stop in plan.stops if stop.distance < route.length - 3)
-        changed.append(replace(plan, seed=start + number, route=route, stops=stops, push=push))
+        stops = tuple(stop for stop in plan.stops if stop.at_m < route.length - 3)
+        pushed = Disturbance(push) if push else None
+        changed.append(replace(plan, seed=start + number, route=route, stops=stops, disturbance=pushed))
     return changed
 
 

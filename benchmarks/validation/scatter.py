@@ -19,8 +19,8 @@ from benchmarks._common import options, out, run_all, write_json
 from footfall.models.subject import SUBJECTS
 from footfall.scenarios.path import PathSpec, build_path
 from footfall.simulate.cache import cached_walk
+from footfall.simulate.plan import Gait, Plan
 from footfall.simulate.walk import TrueFootfalls
-from footfall.simulate.walking import Plan
 
 METRES, LEFT_OUT = 100.0, 3  # m; strides at either end that set out or stop
 PACES, WANDERS = (1.3, 1.5), (0.0, 0.1)
@@ -52,7 +52,8 @@ def measure(job: tuple[str, float, float, int]) -> Scatter:
     """Walk once."""
     subject, pace, wander, seed = job
     spec = PathSpec.model_validate({"elements": [{"kind": "straight", "length_m": METRES}]})
-    plan = Plan("scatter", build_path(spec).route, SUBJECTS[subject], pace=pace, wander=wander, seed=seed)
+    gait = Gait(pace_m_s=pace, wander_m=wander)
+    plan = Plan("scatter", build_path(spec).route, SUBJECTS[subject], gait=gait, seed=seed)
     return Scatter(*job, *scatter(cached_walk(plan).footfalls))
 
 

@@ -30,9 +30,10 @@ from footfall.models.body import Ground
 from footfall.models.policy import stock_policy
 from footfall.models.subject import draw_subject
 from footfall.scenarios.path import PathSpec, build_path
+from footfall.simulate.plan import Gait, Plan, Stop
 from footfall.simulate.walker._balance_kernels import GO_SPEED
-from footfall.simulate.walker.steering import Stop, StrayError
-from footfall.simulate.walking import FallError, Plan, stroll
+from footfall.simulate.walker.steering import StrayError
+from footfall.simulate.walking import FallError, stroll
 from footfall.streams import stream
 
 METRES, AT, PAUSE_S = 12.0, 6.0, 5.0
@@ -83,7 +84,7 @@ def plan(place: str, seed: int) -> Plan:
         route=build_path(spec).route,
         ground=Ground(x[0], y[0], 1.0, heights) if along or across else None,
         subject=draw_subject(rng),
-        pace=float(rng.uniform(0.8, 1.6)),
+        gait=Gait(pace_m_s=float(rng.uniform(0.8, 1.6))),
         stops=(Stop(AT, PAUSE_S),),
         seed=seed,
     )

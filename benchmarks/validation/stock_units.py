@@ -53,16 +53,14 @@ def keep(drawn: Sequence[Drawn]) -> list[Drawn]:
 
 def draw(scenario: Scenario, least: int, most: int, processes: int) -> list[Drawn]:
     """Draw at least `least` units, and more until every walk has one, `most` at most."""
-    walks = scenario.walks
+    walks, base = scenario.seeds.walks, scenario.seeds.base
     drawn: list[Drawn] = []
     for first in range(0, most, least):
         seeds = range(first, min(first + least, most))
         cases = dead_reckoned(
-            shared_out(scenario, walks, scenario.seed, seeds), processes, f"units {seeds[0]} to {seeds[-1]}"
+            shared_out(scenario, walks, base, seeds), processes, f"units {seeds[0]} to {seeds[-1]}"
         )
-        drawn += [
-            judge(case.unit, case.walk - scenario.seed, case.uncorrected_deg(), walks) for case in cases
-        ]
+        drawn += [judge(case.unit, case.walk - base, case.uncorrected_deg(), walks) for case in cases]
         if len(keep(drawn)) == walks:
             break
     return drawn
@@ -105,11 +103,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     drawn = draw(scenario, chosen.units, chosen.most, chosen.processes)
     kept = keep(drawn)
     report(drawn, kept)
-    complete = len(kept) == scenario.walks
+    complete = len(kept) == scenario.seeds.walks
     if complete:
         out.print(f"units = {[one.unit for one in kept]}", highlight=False)
     else:
-        out.print(f"Only {len(kept)} of {scenario.walks} walks found a unit: draw more (--most).")
+        out.print(f"Only {len(kept)} of {scenario.seeds.walks} walks found a unit: draw more (--most).")
     figures = {"kept": [one.unit for one in kept], "drawn": [vars(one) for one in drawn]}
     write_json(chosen.json, {"scenario": scenario.name, **figures})
     return 0 if complete else 1

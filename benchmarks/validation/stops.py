@@ -20,10 +20,11 @@ from benchmarks._common import options, out, run_all, write_json
 from footfall.models.body import Ground
 from footfall.models.subject import draw_subject
 from footfall.scenarios.path import PathSpec, build_path
+from footfall.simulate.plan import Gait, Plan, Stop
 from footfall.simulate.truth import runs
 from footfall.simulate.walk import Walk
-from footfall.simulate.walker.steering import Stop, StrayError
-from footfall.simulate.walking import FallError, Plan, walk
+from footfall.simulate.walker.steering import StrayError
+from footfall.simulate.walking import FallError, walk
 from footfall.streams import stream
 
 METRES, AT, PAUSE_S = 15.0, 10.0, 5.0
@@ -71,9 +72,9 @@ def plan(place: Place, seed: int) -> Plan:
         route=build_path(spec).route,
         ground=place.ground(),
         subject=draw_subject(rng),
-        pace=float(rng.uniform(0.8, 1.6)),
+        gait=Gait(pace_m_s=float(rng.uniform(0.8, 1.6))),
         stops=(Stop(AT, PAUSE_S),),
-        calibration=1.0,
+        calibration_s=1.0,
         seed=seed,
     )
 

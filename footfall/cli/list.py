@@ -22,7 +22,7 @@ def list_(as_json: JsonOption = False) -> None:
     if as_json:
         print_json(
             {
-                "scenarios": {name: scenario.description for name, scenario in scenarios.items()},
+                "scenarios": {name: scenario.file.description for name, scenario in scenarios.items()},
                 "imus": imus,
                 "methods": methods,
                 "detectors": detectors,
@@ -33,8 +33,8 @@ def list_(as_json: JsonOption = False) -> None:
         return
     table = new_table("name", "what", "length\nm", "pace\nm/s", "walks", left=2)
     for name, scenario in scenarios.items():
-        length = f"{scenario.path.route.length:.0f}"
-        table.add_row(name, scenario.description, length, f"{scenario.pace:g}", f"{scenario.walks}")
+        length, pace = f"{scenario.path.route.length:.0f}", f"{scenario.gait.pace_m_s:g}"
+        table.add_row(name, scenario.file.description, length, pace, f"{scenario.seeds.walks}")
     OUT.print(titled("Scenarios", table))
     for title, rows in (
         ("IMUs", imus),

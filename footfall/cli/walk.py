@@ -56,7 +56,7 @@ def walk(
     from footfall.simulate.cache import cached_walk
     from footfall.simulate.truth import divisor
     from footfall.simulate.walk import write_walk
-    from footfall.simulate.walking import PHYSICS_STEP
+    from footfall.simulate.plan import PHYSICS_STEP
 
     if output is not None:
         require_output(output, ".parquet")

@@ -15,7 +15,7 @@ from footfall.scenarios.judge.papers import HDR_TABLE_2, HDR_TABLE_2_MEAN, IHDE_
 from footfall.scenarios.judge.score import Align, Score, improvement, mean_score
 from footfall.scenarios.path import Path
 from footfall.scenarios.run import Result
-from footfall.simulate.walking import versions
+from footfall.simulate.plan import versions
 
 _ERRORS = ("heading_error_final_deg", "heading_error_mean_deg")
 
@@ -119,7 +119,7 @@ def run_report(name: str, results: Sequence[Result]) -> list[RenderableType]:
     ]
     if name == "closed-loop":
         parts.append(paper_table())
-        if first.scenario.units and first.unit_seed in first.scenario.units:
+        if first.unit_seed in (first.scenario.seeds.units or ()):
             parts.append(Text(_CHOSEN_UNITS, style="dim"))
     if name in IHDE_TABLE_2:
         parts.append(ihde_table(name, results))

@@ -11,7 +11,8 @@ from footfall.models.body import build_body
 from footfall.models.policy import Policy
 from footfall.models.route import Route
 from footfall.models.subject import Subject, draw_subject
-from footfall.simulate.walker.steering import Pursuit, Stop, StrayError
+from footfall.simulate.plan import Stop
+from footfall.simulate.walker.steering import Pursuit, StrayError
 from footfall.simulate.walker.walkers import CONTROL_INTERVAL, Walkers
 
 _SPACING = 0.05  # m, of the routes' samples

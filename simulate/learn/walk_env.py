@@ -22,9 +22,10 @@ from footfall.simulate.learn.env import (
     rewarded_step,
 )
 from footfall.simulate.learn.reward import WEIGHTS, total
+from footfall.simulate.plan import PHYSICS_STEP, Plan
 from footfall.simulate.walker.steering import StrayError
 from footfall.simulate.walker.walkers import CONTROL_INTERVAL, N_ACTION, Walkers
-from footfall.simulate.walking import PHYSICS_STEP, Outing, Plan
+from footfall.simulate.walking import Outing
 
 _STAND_S = 1.0  # before the first step along a route
 _OPTIONS = ("scenario", "subject")

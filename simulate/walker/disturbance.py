@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from footfall.simulate.plan import Disturbance
+
 PUSH_S = 0.09  # s that a push lasts
 
 
@@ -19,11 +21,10 @@ class Push:
 
 
 def pushes(
-    impulse: float, every: float, *, first: float, until: float, rng: np.random.Generator
+    disturbance: Disturbance, *, first: float, until: float, rng: np.random.Generator
 ) -> tuple[Push, ...]:
-    """Pushes of `impulse` (N s) into random horizontal directions, one `every` s after `first` (s)."""
-    if impulse == 0:
-        return ()
+    """The pushes between `first` and `until` (s of the record), the first of them `every_s` after `first`."""
+    impulse, every = disturbance.push_Ns, disturbance.every_s
     times = first + every * np.arange(1, max(int((until - first) / every), 0) + 1)
     angles = rng.uniform(-np.pi, np.pi, len(times))
     return tuple(

@@ -6,12 +6,12 @@ In the units of the walker (the 1.75 m body: models.subject).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from footfall.errors import InputError
 from footfall.models.route import Route
+from footfall.simulate.plan import Pace, Stop
 from footfall.simulate.walker._look_kernels import SLOWING_SHARE, SPEED_SLEW
 from footfall.simulate.walker._steer_kernels import pursue
 
@@ -35,26 +35,10 @@ class StrayError(InputError):
     """The walker left its route."""
 
 
-@dataclass(frozen=True)
-class Stop:
-    """Stand for `duration` (s) at `distance` (m) along the route."""
-
-    distance: float
-    duration: float
-
-
-@dataclass(frozen=True)
-class Pace:
-    """From `distance` (m) along the route on, walk at `speed` (m/s)."""
-
-    distance: float
-    speed: float
-
-
 def pace_along(route: Route, pace: float, changes: tuple[Pace, ...]) -> np.ndarray:
     """(n,) m/s at each sample of the route: the first pace, and its changes in walking order."""
-    speeds = np.array([pace, *(change.speed for change in changes)])
-    at = [change.distance for change in changes]
+    speeds = np.array([pace, *(change.m_s for change in changes)])
+    at = [change.at_m for change in changes]
     along: np.ndarray = speeds[np.searchsorted(at, route.s, side="right")]
     return along
 
@@ -161,12 +145,12 @@ class Pursuit:
             return wanted
         stop = self._stops[0]
         # A stop is one wish, in good time, and not a slow walk towards a line.
-        if not self._stopping and stop.distance - self.progress > speed**2 / (2 * STOPPING) + _LAST_STEP:
+        if not self._stopping and stop.at_m - self.progress > speed**2 / (2 * STOPPING) + _LAST_STEP:
             return wanted
         self._stopping = True
         if standing:
             self._stood += self.dt
-            if self._stood >= stop.duration:
+            if self._stood >= stop.for_s:
                 self._stops.pop(0)
                 self._stood, self._stopping = 0.0, False
         return 0.0

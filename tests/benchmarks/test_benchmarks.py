@@ -157,10 +157,10 @@ def test_errors_are_summed_up_over_units_and_noises() -> None:
 
 def test_each_unit_is_heard_through_its_own_noise_and_more(short: str) -> None:
     scenario = load_scenario(short)
-    todo = _common.shared_out(scenario, 2, scenario.seed, (7, 8), 2)
+    todo = _common.shared_out(scenario, 2, scenario.seeds.base, (7, 8), 2)
     cases = _common.dead_reckoned(todo, 1, "walking")
     assert [(case.unit, case.noise) for case in cases] == [(7, 0), (7, 1), (7, 2), (8, 0), (8, 1), (8, 2)]
-    walk = cached_walk(replace(scenario.plan(1), seed=scenario.seed + 1))
+    walk = cached_walk(replace(scenario.plan(1), seed=scenario.seeds.base + 1))
     for case in cases[:2]:
         seed = 7 + _common.NOISE_STEP * case.noise
         recording = record(walk, draw_unit(load_spec("nimu"), 7), seed=seed, temperature=COLD)

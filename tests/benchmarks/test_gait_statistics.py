@@ -134,15 +134,16 @@ def test_strides_are_those_that_were_walked(motion, mount):
 def test_a_mount_sees_what_an_imu_there_records(motion):
     """One walk serves all mounts: the same as walking with the IMU at that mount."""
     from footfall.scenarios.path import PathSpec, build_path
-    from footfall.simulate.walking import Plan, walk
+    from footfall.simulate.plan import Gait, Plan
+    from footfall.simulate.walking import walk
 
     spec = PathSpec.model_validate({"elements": [{"kind": "straight", "length_m": 34.0}]})
     plan = Plan(
         "there",
         build_path(spec).route,
         mount=MOUNTS["heel"],
-        wander=_gait_walks.WANDER_M,
-        calibration=_gait_walks.REST_S,
+        gait=Gait(wander_m=_gait_walks.WANDER_M),
+        calibration_s=_gait_walks.REST_S,
         rate_hz=1000,
     )
     there = walk(plan)

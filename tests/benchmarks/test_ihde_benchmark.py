@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from math import radians
 
 import numpy as np
 import pytest
@@ -12,7 +11,7 @@ from footfall.hdr.methods import tracks
 from footfall.models.imu import draw_unit, load_spec
 from footfall.scenarios.judge.score import score
 from footfall.scenarios.run import reckoning
-from footfall.scenarios.scenario import load_scenario
+from footfall.scenarios.scenario import build_scenario, load_scenario, read_document
 from footfall.simulate.cache import cached_walk
 from footfall.simulate.record import record
 
@@ -23,7 +22,7 @@ from footfall.simulate.record import record
 def test_its_ways_are_the_methods_of_those_names(short_walk, name):
     """With default parameters a way is what `footfall run` scores."""
     bench = ihde_table2
-    scenario = replace(load_scenario("ihde-test1"), imu="nimu", bias_time=20.0)
+    scenario = load_scenario("ihde-test1").changed("sensor", imu="nimu", bias_time_s=20.0)
     tuned = bench.Tuned(bench.HdeParams(), bench.IhdeParams(), bench.JimenezParams(), bench.IhdePlusParams())
     recording = record(
         short_walk, draw_unit(load_spec("nimu"), 3), seed=3, bias_shift=scenario.unit_bias_shift(3)
@@ -36,7 +35,9 @@ def test_its_ways_are_the_methods_of_those_names(short_walk, name):
 def test_a_job_wears_each_unit_with_its_bias_and_its_start(short_walk, monkeypatch):
     """A start that is wrong by 5 deg turns the heading by 5; without a bias the filter is right."""
     monkeypatch.setattr(_ihde_ways, "cached_walk", lambda plan: short_walk)
-    scenario = replace(load_scenario("ihde-test1"), imu="perfect", bias_time=20.0, bias_shift=radians(0.2))
+    scenario = load_scenario("ihde-test1").changed(
+        "sensor", imu="perfect", bias_time_s=20.0, bias_shift_deg_s=0.2
+    )
     way = _ihde_ways.Way
     ways = (way(), way(bias=0.0), way(bias=0.0, start_off_deg=5.0), way(bias=2.0))
     found = _ihde_ways.navigate(_ihde_ways.Job(scenario, 1, (1, 2, 3), ways))
@@ -63,7 +64,7 @@ def test_each_method_is_tuned_in_its_own_part_of_the_grid(monkeypatch):
 
     def judged(jobs, processes, label):
         assert {job.seed for job in jobs} == {101, 102}
-        assert {job.scenario.variability for job in jobs} == {1.0, 0.3}
+        assert {job.scenario.gait.variability for job in jobs} == {1.0, 0.3}
         ways = [way.params for way in jobs[0].ways]
         errors = np.full((2, len(ways), 3), 5.0)
         for grid in grids:
@@ -101,9 +102,9 @@ def test_a_seed_on_both_sides_is_refused():
 def test_it_runs_from_walks_to_page(workshop, tmp_path, monkeypatch):
     """On thirty metres in place of the tests and the loop, with few parameters."""
     bench = ihde_table2
-    short = load_scenario(workshop / "short.toml")
+    short = read_document(workshop / "short.toml")
     monkeypatch.setattr(bench, "GAITS", {"people": 1.0, "line": 1.0})
-    monkeypatch.setattr(bench, "load_scenario", lambda test: replace(short, name=test))
+    monkeypatch.setattr(bench, "load_scenario", lambda test: build_scenario(replace(short, name=test)))
     for module in (
         "benchmarks.papers._ihde_ways",
         "footfall.scenarios.run",

@@ -31,7 +31,7 @@ def test_delagging_on_the_page_undoes_the_filter():
 
 def test_the_motions_are_the_scenarios_walks_and_three_others():
     plans = swaying.plans(swaying.load_scenario("swaying"))
-    assert [plan.wander for plan in plans.values()] == [0.0, 0.1, 0.3, 0.0, 0.0, 0.0]
+    assert [plan.gait.wander_m for plan in plans.values()] == [0.0, 0.1, 0.3, 0.0, 0.0, 0.0]
     turned = {name: np.degrees(plan.route.heading[-1]) for name, plan in plans.items()}
     assert turned["turning"] == pytest.approx(90)
     assert turned["curving, radius 60 m"] == pytest.approx(90)

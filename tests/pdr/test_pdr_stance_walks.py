@@ -9,8 +9,8 @@ from footfall.models.imu import draw_unit, load_spec
 from footfall.pdr.stance import StanceParams, ThresholdDetector, find_stances
 from footfall.scenarios.path import PathSpec, build_path
 from footfall.simulate.cache import cached_walk
+from footfall.simulate.plan import Gait, Plan
 from footfall.simulate.record import record
-from footfall.simulate.walking import Plan
 
 PACES = (0.7, 1.0, 1.35, 1.7)
 STILL = 2.0  # s
@@ -21,7 +21,10 @@ def walks():
     """25 m straight ahead at each pace, as people walk."""
     elements = [{"kind": "straight", "length_m": 25.0}]
     route = build_path(PathSpec.model_validate({"elements": elements})).route
-    return {pace: cached_walk(Plan("paces", route, pace=pace, calibration=STILL, seed=5)) for pace in PACES}
+    return {
+        pace: cached_walk(Plan("paces", route, gait=Gait(pace_m_s=pace), calibration_s=STILL, seed=5))
+        for pace in PACES
+    }
 
 
 def stances_per_stride(walk, imu="nimu", detector=None, params=None):

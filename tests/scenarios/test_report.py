@@ -15,7 +15,7 @@ from footfall.scenarios.judge.score import Score, mean_score
 from footfall.scenarios.report import figures
 from footfall.scenarios.report.tables import as_json, extent, paper_table, path_line, run_report, spread
 from footfall.scenarios.run import perform, tasks
-from footfall.scenarios.scenario import load_scenario
+from footfall.scenarios.scenario import build_scenario, load_scenario
 
 NOISY = ((1.0, 9.0, 2.0), (41.0, 29.0, 20.0), (7.0, 7.0, 7.0))  # deg, errors of a walk by further noise
 
@@ -136,7 +136,7 @@ def test_the_papers_table_is_printed_for_its_own_walk_alone(walked):
 def test_chosen_units_are_owned_up_to(walked):
     results = several(walked, 1)
     assert "kept because" not in printed(*run_report("closed-loop", results))
-    chosen = replace(results[0].task.scenario, units=(1000,))
+    chosen = results[0].task.scenario.changed("seeds", units=[1000])
     results = [replace(results[0], task=replace(results[0].task, scenario=chosen))]
     assert "kept because" in printed(*run_report("closed-loop", results))
 
@@ -193,7 +193,7 @@ def test_nothing_in_a_figure_hides_another(walked, walks, draw):
     """Panels, their names and the head keep clear of each other and inside the figure; long names wrap."""
     results = several(walked, walks)
     name = "a-scenario-of-a-name-that-goes-on-and-on-for-ever-and-a-day"
-    scenario = replace(walked.task.scenario, name=name)
+    scenario = build_scenario(replace(walked.task.scenario.document, name=name))
     results = [replace(result, task=replace(result.task, scenario=scenario)) for result in results]
     figure = draw(results)
     figure.canvas.draw()

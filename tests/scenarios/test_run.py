@@ -54,7 +54,7 @@ def test_seeds_units_and_subjects_of_the_walks(workshop):
     scenario = load_scenario(workshop / "short.toml")
     todo = tasks(scenario, other_units=5)
     assert [(task.number, task.walk_seed, task.unit_seed) for task in todo] == [(0, 3, 3), (1, 4, 4)]
-    chosen = replace(scenario, units=(70, 90))
+    chosen = scenario.changed("seeds", units=[70, 90])
     assert [task.unit_seed for task in tasks(chosen, walks=3)] == [70, 90, 70]
     # The chosen units belong to the scenario's own sheet and walks.
     assert [task.unit_seed for task in tasks(chosen, imu="perfect")] == [3, 4]
@@ -72,7 +72,7 @@ def test_every_other_unit_is_scored_once(workshop, walks, units):
 
 def test_one_unit_has_one_noise_unless_asked_and_every_further_noise_is_of_one_walk(workshop):
     scenario = load_scenario(workshop / "short.toml")
-    todo = tasks(replace(scenario, units=(70, 90)), walks=3, noises=4)
+    todo = tasks(scenario.changed("seeds", units=[70, 90]), walks=3, noises=4)
     assert [task.noise_seed for task in todo] == [task.unit_seed for task in todo] == [70, 90, 70]
     seeds = [seed for task in todo for seed in task.noises]
     assert [len(task.noises) for task in todo] == [4, 4, 4]
@@ -127,9 +127,8 @@ def test_the_drift_budget_explains_the_uncorrected_heading(done):
 
 def test_a_run_tells_rest_shift_and_the_paths_direction(workshop):
     """Ten of 26 s of rest are averaged, the unit's bias shifts afterwards, and the path begins along x."""
-    scenario = replace(
-        load_scenario(workshop / "short.toml"), bias_time=10.0, bias_shift=math.radians(0.3), imu="perfect"
-    )
+    scenario = load_scenario(workshop / "short.toml")
+    scenario = scenario.changed("sensor", bias_time_s=10.0, bias_shift_deg_s=0.3, imu="perfect")
     (task, *_) = tasks(scenario, walks=1, methods=["pdr", "ihde"])
     result = perform(task)
     shift = scenario.unit_bias_shift(task.unit_seed)
@@ -141,7 +140,7 @@ def test_a_run_tells_rest_shift_and_the_paths_direction(workshop):
     assert (told.pdr.bias_s, told.directions.reference) == (10.0, 0.0)
     assert told.start == start_pose(result.walk, 10.0)
     assert told.guided.gyro_bias_sd == pytest.approx(math.radians(0.3))
-    sure = reckoning(replace(scenario, bias_shift=0.0), result.walk, result.recording)
+    sure = reckoning(scenario.changed("sensor", bias_shift_deg_s=0.0), result.walk, result.recording)
     assert sure.guided.gyro_bias_sd == pytest.approx(math.radians(0.1))
     assert result.tracks["ihde"].meta["params"]["directions"]["reference"] == 0.0
 

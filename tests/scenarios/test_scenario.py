@@ -1,8 +1,10 @@
 """Scenarios: the stock ones are what they say, a user's own works the same, and mistakes are named."""
 
 import math
+import pickle
 import re
 import shutil
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -12,7 +14,19 @@ from footfall.models.body import MOUNTS
 from footfall.models.imu import TemperatureProfile, load_spec
 from footfall.models.imu.spec import SHEETS
 from footfall.scenarios.path import MIN_RADIUS_M
-from footfall.scenarios.scenario import STOCK, load_scenario, stock_scenarios
+from footfall.scenarios.scenario import (
+    STOCK,
+    DisturbanceTable,
+    GaitTable,
+    PaceTable,
+    SensorTable,
+    StopTable,
+    build_scenario,
+    load_scenario,
+    read_document,
+    stock_scenarios,
+)
+from footfall.simulate.plan import Disturbance, Gait, Pace, Plan, Stop
 
 LONG_NAMES = ("closed-loop", "closed-loop-gentle", "curving", "straight", "turning")
 IHDE_NAMES = ("ihde-test1", "ihde-test2", "ihde-test3")
@@ -28,7 +42,7 @@ def test_the_ihde_papers_paths_are_as_long_as_stated_and_end_at_their_start(name
     route, closure = scenario.path.route, scenario.path.closure
     assert route.length == pytest.approx(length, abs=0.03)
     assert closure.gap_m < 1e-3
-    assert scenario.walks >= 20
+    assert scenario.seeds.walks >= 20
     assert scenario.imu == "mtig710"
 
 
@@ -52,8 +66,8 @@ def test_stock_scenarios_are_1800_m_and_walkable(name):
     assert scenario.name == name
     assert route.length == pytest.approx(1800, abs=0.01)
     assert np.abs(route.curvature).max() <= 1 / MIN_RADIUS_M + 1e-12
-    assert 1.0 <= scenario.pace <= 1.5
-    assert min(scenario.wander) > 0
+    assert 1.0 <= scenario.gait.pace_m_s <= 1.5
+    assert min(scenario.gait.wander_m) > 0
     assert scenario.path.closed == (name in ("closed-loop", "closed-loop-gentle", "turning"))
     load_spec(scenario.imu)
 
@@ -112,7 +126,7 @@ def test_a_plan_holds_what_the_file_says():
     assert [plan.subject.name for plan in plans] == ["reference", "shorter", "reference"]
     assert plans[0].route is scenario.path.route
     assert plans[0].ground is plans[1].ground is scenario.terrain
-    assert (plans[0].pace, plans[0].rate_hz, plans[0].wander) == (scenario.pace, 200, scenario.wander[0])
+    assert (plans[0].gait, plans[0].rate_hz) == (Gait(pace_m_s=1.5, wander_m=0.1, wander_time_s=4.0), 200)
     assert (plans[0].mount, plans[0].mount.foot) == (MOUNTS["medial"], "right")
 
 
@@ -136,20 +150,20 @@ def test_swaying_sways_more_from_walk_to_walk_on_one_straight():
     assert not route.curvature.any()
     assert route.length == pytest.approx(900)
     plans = [scenario.plan(walk) for walk in range(4)]
-    assert [(plan.wander, plan.wander_time) for plan in plans] == [
+    assert [(plan.gait.wander_m, plan.gait.wander_time_s) for plan in plans] == [
         (0.0, 4.0),
         (0.1, 4.0),
         (0.3, 8.0),
         (0.0, 4.0),
     ]
     assert len({plan.subject.name for plan in plans}) == 1
-    assert scenario.walks == 3
+    assert scenario.seeds.walks == 3
 
 
 def test_a_plan_holds_pauses_and_changes_of_pace():
     plan = load_scenario("errands").plan(0)
-    assert [stop.distance for stop in plan.stops] == [60.0, 210.0, 375.0, 560.0]
-    assert [(pace.distance, pace.speed) for pace in plan.paces] == [(215.0, 1.5), (265.0, 1.1), (440.0, 1.3)]
+    assert [stop.at_m for stop in plan.stops] == [60.0, 210.0, 375.0, 560.0]
+    assert [(pace.at_m, pace.m_s) for pace in plan.paces] == [(215.0, 1.5), (265.0, 1.1), (440.0, 1.3)]
 
 
 def test_level_scenarios_have_no_terrain():
@@ -204,15 +218,60 @@ def own(tmp_path):
 
 def test_a_users_file_works_as_a_stock_name_does(own):
     scenario = load_scenario(own())
-    assert (scenario.name, scenario.description) == ("mine", "mine")
+    assert (scenario.name, scenario.file.description) == ("mine", "mine")
     assert scenario.path.route.length == pytest.approx(77 + 1.5 * math.pi / 2)
     assert [subject.name for subject in scenario.subjects] == ["taller", "me"]
     assert scenario.subjects[1].mass_kg == 80
-    assert [scenario.plan(walk).seed for walk in range(scenario.walks)] == [40, 41, 42]
+    assert [scenario.plan(walk).seed for walk in range(scenario.seeds.walks)] == [40, 41, 42]
     assert [scenario.unit_seed(walk) for walk in range(4)] == [7, 9, 7, 9]
-    assert (scenario.calibration, scenario.bias_time, scenario.bias_shift) == (30, 25, 0)
+    sensor = scenario.sensor
+    assert (sensor.calibration_s, sensor.bias_time_s, sensor.bias_shift_deg_s) == (30, 25, 0)
     without = load_scenario(own(("units = [7, 9]", "")))
     assert [without.unit_seed(walk) for walk in range(3)] == [40, 41, 42]
+
+
+def test_a_document_that_is_changed_is_built_and_refused_as_a_file_is(own):
+    path = own()
+    document = read_document(path)
+    assert (document.name, document.folder, document.table["gait"]) == (
+        "mine",
+        path.parent,
+        {"pace_m_s": 1.2},
+    )
+    brisk = build_scenario(document.changed("gait", pace_m_s=1.6))
+    assert (brisk.gait.pace_m_s, brisk.plan(0).gait.pace_m_s) == (1.6, 1.6)
+    assert load_scenario(path).changed("gait", pace_m_s=1.6).file == brisk.file
+    assert build_scenario(document).gait.pace_m_s == 1.2
+    with pytest.raises(InputError, match=rf"^{re.escape(str(path))}: gait.pace_m_s = 1.9: .* equal to 1.7"):
+        build_scenario(document.changed("gait", pace_m_s=1.9))
+    # One that comes from no file is spoken of by its name.
+    with pytest.raises(InputError, match=r"^mine: unknown key 'sensor.imo' = 3$"):
+        build_scenario(replace(document.changed("sensor", imo=3), source=""))
+
+
+def test_a_setting_has_one_name_in_file_and_plan():
+    """Where a file may give one for each walk, the plan has this walk's."""
+    assert set(GaitTable.model_fields) == {field.name for field in fields(Gait)}
+    assert set(StopTable.model_fields) == {field.name for field in fields(Stop)}
+    assert set(PaceTable.model_fields) == {field.name for field in fields(Pace)}
+    assert set(DisturbanceTable.model_fields) == {field.name for field in fields(Disturbance)}
+    shared = {"calibration_s", "rate_hz"}
+    assert shared <= set(SensorTable.model_fields) & {field.name for field in fields(Plan)}
+
+
+def test_everything_of_a_gait_arrives_in_the_plan(own):
+    gait = Gait(0.9, 0.5, 0.25, 0.75, 1.5, 0.125, 0.0625, 8.0)
+    keys = "\n".join(f"{field.name} = {getattr(gait, field.name)}" for field in fields(Gait))
+    disturbed = "[disturbance]\npush_Ns = 3.0\nevery_s = 7.0\n\n[path]"
+    plan = load_scenario(own(("pace_m_s = 1.2", keys), ("[path]", disturbed))).plan(0)
+    assert (plan.gait, plan.disturbance) == (gait, Disturbance(3.0, 7.0))
+    assert load_scenario(own()).plan(0).disturbance is None
+
+
+def test_a_scenario_goes_to_another_process(own):
+    scenario = load_scenario(own())
+    there = pickle.loads(pickle.dumps(scenario))
+    assert (there.file, there.imu, there.plan(1).gait) == (scenario.file, scenario.imu, scenario.plan(1).gait)
 
 
 def test_temperatures_are_used_in_turn_and_one_serves_every_walk(own):
@@ -230,24 +289,23 @@ def test_variability_arrives_in_the_plan_whole_and_in_parts(own):
             f"{name} = {value}\n" for name, value in zip(names, values, strict=True) if value != 1.0
         )
         plan = load_scenario(own(("pace_m_s = 1.2", f"pace_m_s = 1.2\n{keys}"))).plan(0)
-        assert tuple(getattr(plan, name) for name in names) == values
+        assert tuple(getattr(plan.gait, name) for name in names) == values
 
 
 def test_the_side_of_a_bias_shift_is_its_units(own):
     keys = 'imu = "nimu"\nbias_time_s = 4.0\nbias_shift_deg_s = 0.2'
     scenario = load_scenario(own(('imu = "nimu"', keys)))
-    assert scenario.bias_time == 4
+    assert scenario.sensor.bias_time_s == 4
     assert [scenario.unit_bias_shift(seed) for seed in (7, 8)] == pytest.approx(np.radians([0.2, -0.2]))
 
 
 @pytest.mark.parametrize("name", IHDE_NAMES)
 def test_the_ihde_papers_walks_rest_for_five_seconds_with_the_imu_on_the_left_foot(name):
     scenario = load_scenario(name)
-    assert (scenario.calibration, scenario.bias_time) == (5, 5)
+    assert (scenario.sensor.calibration_s, scenario.sensor.bias_time_s) == (5, 5)
     assert scenario.plan(0).mount.foot == "left"
-    assert scenario.bias_shift == pytest.approx(
-        np.radians({"ihde-test1": 0.215, "ihde-test2": 0.108, "ihde-test3": 0.047}[name])
-    )
+    shift = {"ihde-test1": 0.215, "ihde-test2": 0.108, "ihde-test3": 0.047}[name]
+    assert scenario.unit_bias_shift(3) == pytest.approx(np.radians(shift))
 
 
 @pytest.mark.parametrize("name", stock_scenarios())
@@ -255,7 +313,7 @@ def test_a_copy_of_a_stock_file_is_the_same_scenario(name, tmp_path):
     stock, copy = load_scenario(name), load_scenario(shutil.copy(STOCK / f"{name}.toml", tmp_path))
     assert np.array_equal(copy.path.route.x, stock.path.route.x)
     assert np.array_equal(copy.path.route.z, stock.path.route.z)
-    assert (copy.name, copy.seed, copy.walks, copy.imu) == (stock.name, stock.seed, stock.walks, stock.imu)
+    assert (copy.name, copy.file, copy.imu) == (stock.name, stock.file, stock.imu)
 
 
 def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch):

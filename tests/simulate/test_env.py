@@ -18,9 +18,9 @@ from footfall.models.subject import SUBJECTS, Subject
 from footfall.scenarios.scenario import load_scenario
 from footfall.simulate.learn.env import Difficulty, WalkVectorEnv
 from footfall.simulate.learn.reward import WEIGHTS
+from footfall.simulate.plan import Plan
 from footfall.simulate.walker.observation import LAYOUT, N_OBSERVATION
 from footfall.simulate.walker.walkers import N_ACTION
-from footfall.simulate.walking import Plan
 from tests.helpers.places import DOCS
 
 ID = "footfall/Walk-v0"

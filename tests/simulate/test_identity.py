@@ -23,9 +23,9 @@ from footfall.scenarios.run import start_pose
 from footfall.simulate.cache import plan_key
 from footfall.simulate.from_recording import add_errors
 from footfall.simulate.identity import mount_name, walk_identity
+from footfall.simulate.plan import Disturbance, Gait, Pace, Stop
 from footfall.simulate.record import record
 from footfall.simulate.walk import read_walk, write_walk
-from footfall.simulate.walker.steering import Pace, Stop
 
 
 def straight(length):
@@ -40,13 +40,13 @@ OTHERS = {
     "subject": {"subject": Subject(height_m=1.74)},
     "ground": {"ground": Ground(-9.0, -9.0, 1.0, np.zeros((60, 60), dtype=np.float32))},
     "ground's height": {"ground": Ground(-9.0, -9.0, 1.0, np.eye(60, dtype=np.float32))},
-    "pace": {"pace": 1.31},
+    "pace": {"gait": Gait(pace_m_s=1.31, wander_m=0.1)},
     "paces": {"paces": (Pace(9.0, 1.2),)},
     "stops": {"stops": (Stop(9.0, 4.0),)},
-    "variability": {"variability": 0.9},
-    "wander": {"wander": 0.2},
-    "calibration": {"calibration": 27.0},
-    "push": {"push": 1.0},
+    "variability": {"gait": Gait(variability=0.9, wander_m=0.1)},
+    "wander": {"gait": Gait(wander_m=0.2)},
+    "calibration": {"calibration_s": 27.0},
+    "push": {"disturbance": Disturbance(1.0)},
     "rate": {"rate_hz": 100.0},
     "name": {"name": "long"},
 }

@@ -13,10 +13,10 @@ from footfall.models.route import Route
 from footfall.models.subject import SUBJECTS, Subject
 from footfall.pdr.strapdown import integrate
 from footfall.simulate.cache import cached_walk, plan_key
+from footfall.simulate.plan import Disturbance, Gait, Pace, Plan, Stop
 from footfall.simulate.truth import runs
 from footfall.simulate.walk import Walk, footfalls_path, read_walk, write_walk
-from footfall.simulate.walker.steering import Pace, Stop
-from footfall.simulate.walking import STAND_S, FallError, Outing, Plan, walk
+from footfall.simulate.walking import STAND_S, FallError, Outing, walk
 
 
 def test_it_goes_where_the_route_goes(short_plan: Plan, short_walk: Walk) -> None:
@@ -46,14 +46,14 @@ def test_it_walks_at_a_human_gait(short_walk: Walk) -> None:
 
 def test_it_stands_before_and_after(short_plan: Plan, short_walk: Walk) -> None:
     """A static bias may be taken before the first step: the foot turns by less than 0.1 deg/s."""
-    waited = short_walk.t < short_plan.calibration - 0.1
+    waited = short_walk.t < short_plan.calibration_s - 0.1
     assert np.degrees(np.linalg.norm(short_walk.gyro[waited], axis=1)).max() < 0.1
     # What is left of it must not be taken for a bias: less than 0.2 deg over 20 minutes.
     attitude = Rotation.from_quat(short_walk.quaternion[waited][[0, -1]], scalar_first=True)
-    turned = (attitude[0].inv() * attitude[1]).magnitude() / short_plan.calibration
+    turned = (attitude[0].inv() * attitude[1]).magnitude() / short_plan.calibration_s
     assert np.degrees(turned) * 1200 < 0.2
     np.testing.assert_allclose(np.linalg.norm(short_walk.accel[waited], axis=1), 9.80665, atol=0.05)
-    assert short_walk.footfalls.t[0] == pytest.approx(short_plan.calibration, abs=0.02)
+    assert short_walk.footfalls.t[0] == pytest.approx(short_plan.calibration_s, abs=0.02)
     end = short_walk.t > short_walk.t[-1] - 1.0
     assert short_walk.stance[end][:-5].all()
     assert np.degrees(np.linalg.norm(short_walk.gyro[end], axis=1)).max() < 0.5
@@ -63,7 +63,7 @@ def test_it_stands_before_and_after(short_plan: Plan, short_walk: Walk) -> None:
 def test_it_pauses_where_it_is_asked_to(short_plan: Plan) -> None:
     rates = []
     for seed in (8, 9, 10):
-        paused = walk(replace(short_plan, stops=(Stop(12.0, 6.0),), calibration=1.0, seed=seed))
+        paused = walk(replace(short_plan, stops=(Stop(12.0, 6.0),), calibration_s=1.0, seed=seed))
         stances = runs(paused.stance) * (paused.t[1] - paused.t[0])
         long = stances[np.diff(stances, axis=1)[:, 0] > 3.0]
         assert len(long) == 2  # the pause and the end
@@ -81,10 +81,13 @@ def test_it_pauses_where_it_is_asked_to(short_plan: Plan) -> None:
 
 def test_the_parts_of_variability_are_each_times_the_whole(short_plan: Plan) -> None:
     """Placement, cadence and toe-out, in this order."""
-    plan = replace(short_plan, variability=0.5, placement_variability=0.2, toe_out_variability=1.6)
+    gait = Gait(variability=0.5, placement_variability=0.2, toe_out_variability=1.6)
+    plan = replace(short_plan, gait=gait)
     level = Outing(plan, stock_policy().feedback_gains, stand=1.0).walkers.variability.level
     np.testing.assert_allclose(level, [[0.1, 0.5, 0.8]])
-    level = Outing(replace(plan, cadence_variability=0.0), stock_policy().feedback_gains, stand=1.0)
+    level = Outing(
+        replace(plan, gait=replace(gait, cadence_variability=0.0)), stock_policy().feedback_gains, stand=1.0
+    )
     np.testing.assert_allclose(level.walkers.variability.level, [[0.1, 0.0, 0.8]])
 
 
@@ -92,7 +95,11 @@ def test_it_changes_its_pace_where_it_is_asked_to(short_plan: Plan) -> None:
     n = 1201
     s, nil = np.arange(n) * 0.05, np.zeros(n)
     plan = replace(
-        short_plan, route=Route(s, s, nil, nil, nil, nil), pace=0.9, paces=(Pace(25.0, 1.5),), calibration=1.0
+        short_plan,
+        route=Route(s, s, nil, nil, nil, nil),
+        gait=replace(short_plan.gait, pace_m_s=0.9),
+        paces=(Pace(25.0, 1.5),),
+        calibration_s=1.0,
     )
     falls = walk(plan).footfalls
     x = falls.position[:, 0]
@@ -127,11 +134,11 @@ def test_a_fall_after_the_path_spoils_the_stand_and_not_the_walk(short_plan: Pla
 
 
 def test_a_pushed_walk_says_so(short_plan: Plan, short_walk: Walk) -> None:
-    pushed = walk(replace(short_plan, push=10.0, push_every=5.0))
+    pushed = walk(replace(short_plan, disturbance=Disturbance(10.0, 5.0)))
     told = np.array(pushed.meta["pushes_s_Ns_Ns"])
     assert len(told) >= 4
     np.testing.assert_allclose(np.hypot(told[:, 1], told[:, 2]), 10.0)
-    assert told[0, 0] == short_plan.calibration + 5.0
+    assert told[0, 0] == short_plan.calibration_s + 5.0
     assert "pushes_s_Ns_Ns" not in short_walk.meta
     before = slice(0, int((told[0, 0] - 0.1) * short_plan.rate_hz))
     np.testing.assert_array_equal(pushed.position[before], short_walk.position[before])
@@ -143,7 +150,8 @@ def test_a_pushed_walk_says_so(short_plan: Plan, short_walk: Walk) -> None:
 def test_people_walk_to_scale(short_plan: Plan, short_walk: Walk, height: float, mass: float) -> None:
     """The same Froude number: strides as long and as slow as the legs."""
     person = Subject("somebody", height_m=height, mass_kg=mass)
-    other = walk(replace(short_plan, subject=person, pace=short_plan.pace * person.time_scale))
+    pace = short_plan.gait.pace_m_s * person.time_scale
+    other = walk(replace(short_plan, subject=person, gait=replace(short_plan.gait, pace_m_s=pace)))
 
     def stride(truth: Walk) -> tuple[float, float]:
         length = np.hypot(*np.diff(truth.footfalls.position[:, :2], axis=0).T)
@@ -153,7 +161,7 @@ def test_people_walk_to_scale(short_plan: Plan, short_walk: Walk, height: float,
     assert time / reference_time == pytest.approx(person.time_scale, rel=0.05)
     assert length / reference_length == pytest.approx(person.scale, rel=0.08)
     # Every control step takes 30 ms of the person's own time: they stand as long as they are asked to.
-    waited = other.t < short_plan.calibration - 0.1
+    waited = other.t < short_plan.calibration_s - 0.1
     assert np.degrees(np.linalg.norm(other.gyro[waited], axis=1)).max() < 0.1
     still = other.t < 20
     assert np.linalg.norm(other.accel[still], axis=1).mean() == pytest.approx(9.80665, abs=0.02)
@@ -242,7 +250,7 @@ def test_walks_are_cached_by_content(tmp_path, monkeypatch, short_plan: Plan, sh
     found = cached_walk(short_plan)
     assert len(calls) == 1
     np.testing.assert_array_equal(found.gyro, short_walk.gyro)
-    cached_walk(replace(short_plan, pace=1.2))
+    cached_walk(replace(short_plan, gait=replace(short_plan.gait, pace_m_s=1.2)))
     assert len(calls) == 2
     cached_walk(short_plan, use_cache=False)
     assert len(calls) == 3
@@ -262,10 +270,10 @@ def test_the_key_knows_everything_that_matters(short_plan: Plan) -> None:
             replace(short_plan, seed=6),
             replace(short_plan, rate_hz=100.0),
             replace(short_plan, mount=MOUNTS["heel"]),
-            replace(short_plan, wander=0.11),
-            replace(short_plan, placement_variability=0.9),
-            replace(short_plan, cadence_variability=0.9),
-            replace(short_plan, toe_out_variability=0.9),
+            replace(short_plan, gait=replace(short_plan.gait, wander_m=0.11)),
+            replace(short_plan, gait=replace(short_plan.gait, placement_variability=0.9)),
+            replace(short_plan, gait=replace(short_plan.gait, cadence_variability=0.9)),
+            replace(short_plan, gait=replace(short_plan.gait, toe_out_variability=0.9)),
             replace(short_plan, subject=SUBJECTS["taller"]),
             replace(short_plan, route=replace(short_plan.route, x=short_plan.route.x + 1e-9)),
         )

@@ -16,8 +16,9 @@ from footfall.errors import InputError
 from footfall.models.body import Ground
 from footfall.models.policy import stock_policy
 from footfall.simulate.draw import SIDE_VIEW, Stage, has_screen
+from footfall.simulate.plan import Plan
 from footfall.simulate.walker.walkers import N_ACTION
-from footfall.simulate.walking import Outing, Plan
+from footfall.simulate.walking import Outing
 from tests.helpers.commands import expect_one_sentence
 
 STILL = np.zeros(N_ACTION, dtype=np.float32)
