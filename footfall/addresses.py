@@ -166,9 +166,7 @@ def _set(table: dict[str, Any], parts: tuple[Part, ...], value: Any, address: st
         return
     below = table.setdefault(name, {}) if which is None else table.get(name, [])
     if which is None and isinstance(below, list):
-        raise InputError(
-            f"{here} is a list of {len(below)}: say which, {here}[0] or {here}[*]", address
-        )
+        raise InputError(f"{here} is a list of {len(below)}: say which, {here}[0] or {here}[*]", address)
     if which is None:
         if not isinstance(below, dict):
             raise InputError(f"{here} is {below!r}, there is nothing below it", address)

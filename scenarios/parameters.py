@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -16,7 +16,7 @@ from footfall.hdr.method import Method
 from footfall.addresses import edited, keys, parse, pattern
 from footfall.errors import InputError
 from footfall.hdr.methods import METHODS
-from footfall.models.imu import SheetDocument, read_sheet
+from footfall.models.imu import ImuSpec, SheetDocument, build_spec, read_sheet
 from footfall.models.imu.override import CONSTANTS, overridden
 from footfall.models.imu.spec import ImuSheet
 from footfall.models.imu.unit import draw_unit
@@ -209,18 +209,49 @@ def _as_table(entry: Any) -> Any:
 
 
 def _imu(base: Documents, address: str, path: str, value: Any) -> Documents:
+    return replace(base, sheet=_sheet_with(base.sheet, address, path, value))
+
+
+def _sheet_with(sheet: SheetDocument, address: str, path: str, value: Any) -> SheetDocument:
     if not path:
-        return replace(base, sheet=read_sheet(str(value)))
+        return read_sheet(str(value))
     known = [f"imu.{key.address}" for key in keys(ImuSheet)]
     if address not in known:
         one = f"unit.{path}" if path in CONSTANTS else None
         spread = next((name for name in known if name.replace("_sigma", "") == address), None)
         if one and spread:
-            raise InputError(
-                f"unknown; did you mean {spread} (of the sheet) or {one} (of a unit)?", address
-            )
+            raise InputError(f"unknown; did you mean {spread} (of the sheet) or {one} (of a unit)?", address)
         _require_known(address, known)
-    return replace(base, sheet=replace(base.sheet, table=edited(base.sheet.table, path, value)))
+    return replace(sheet, table=edited(sheet.table, path, value))
+
+
+def sensor(imu: str, values: Mapping[str, Any]) -> tuple[ImuSpec, dict[str, Any]]:
+    """A data sheet with other values, and the constants of a unit that are given by hand (`overridden`).
+
+    Raises
+    ------
+    InputError
+        An address of another area, or a value that the sheet or the unit refuses.
+    """
+    require_areas(values, ("imu", "unit"), "record")
+    sheet, unit = read_sheet(imu), {}
+    for address, value in values.items():
+        area, _, path = address.partition(".")
+        if area == "imu":
+            sheet = _sheet_with(sheet, address, path, value)
+        else:
+            _require_known(address, [f"unit.{name}" for name in CONSTANTS])
+            unit[path] = value
+    return build_spec(sheet), unit
+
+
+def require_areas(values: Mapping[str, Any], areas: Collection[str], command: str) -> None:
+    """Refuse addresses of stages that a command does not do."""
+    for address in values:
+        if address.partition(".")[0] not in areas:
+            raise InputError(
+                f"--set {address}: footfall {command} takes addresses of {', '.join(areas)} alone"
+            )
 
 
 def _unit(base: Documents, address: str, path: str, value: Any) -> Documents:

@@ -29,18 +29,20 @@ def plan_key(plan: Plan, policy: Policy) -> str:
 def cached_walk(
     plan: Plan,
     *,
-    use_cache: bool = True,
+    folder: Path | None = None,
     policy: Policy | None = None,
     on_progress: Callable[[float], None] | None = None,
 ) -> Walk:
     """`walk(plan)`, from the cache where it has been walked before.
 
-    `use_cache=False` neither reads nor writes the cache. A damaged cache file is walked again.
+    A damaged cache file is walked again.
+
+    Parameters
+    ----------
+    folder : of the cache; the user's when None
     """
     policy = policy or stock_policy()
-    if not use_cache:
-        return walk(plan, policy, on_progress)
-    path = cache_folder() / f"{plan_key(plan, policy)}.parquet"
+    path = (folder or cache_folder()) / f"{plan_key(plan, policy)}.parquet"
     if path.exists():
         try:
             return read_walk(path)

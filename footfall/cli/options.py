@@ -36,6 +36,34 @@ RateOption = Annotated[
     float | None,
     typer.Option("--rate", help="Samples per second (Hz), for a file without time.", callback=finite),
 ]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="ADDRESS=VALUE",
+        help="Another value for a parameter (see `footfall parameters`); may be repeated.",
+        show_default=False,
+    ),
+]
+WithoutOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Switch a sensor effect off (see `footfall list`); may be repeated.", show_default=False
+    ),
+]
+OnlyOption = Annotated[
+    list[str] | None,
+    typer.Option(help="Switch all sensor effects off but this one; may be repeated.", show_default=False),
+]
+DirectionsOption = Annotated[
+    int | None,
+    typer.Option(
+        min=1,
+        help="How many dominant directions there are, evenly spaced, for methods that go by them: 4 if left "
+        "out, 8 with diagonals.",
+        show_default=False,
+    ),
+]
 JsonOption = Annotated[
     bool, typer.Option("--json", help="Print one JSON document instead of tables, for programs.")
 ]

@@ -8,7 +8,15 @@ from typing import Annotated
 
 import typer
 
-from footfall.cli.options import FormatOption, OutputOption, RateOption, UnitOption
+from footfall.cli.options import (
+    FormatOption,
+    OnlyOption,
+    OutputOption,
+    RateOption,
+    SetOption,
+    UnitOption,
+    WithoutOption,
+)
 from footfall.cli.terminal import ERR, finite, require_output, say
 from footfall.errors import InputError
 
@@ -40,12 +48,8 @@ def record(
             show_default=False,
         ),
     ] = None,
-    without: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Switch a sensor effect off (see `footfall list`); may be repeated.", show_default=False
-        ),
-    ] = None,
+    without: WithoutOption = None,
+    only: OnlyOption = None,
     indoors: Annotated[
         float, typer.Option(help="Temperature of the room that the IMU comes from, degC.", callback=finite)
     ] = 20.0,
@@ -59,6 +63,7 @@ def record(
             callback=finite,
         ),
     ] = 0.0,
+    settings: SetOption = None,
     format: FormatOption = "auto",
     unit: UnitOption = None,
     rate: RateOption = None,
@@ -68,9 +73,12 @@ def record(
     With --from-recording a real foot walks, and what the IMU adds to its recording is known; --format, --unit
     and --rate tell how to read it.
     """
+    from footfall.cli.choices import dropped_effects
     from footfall.formats import parse_units, read
-    from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
+    from footfall.models.imu import TemperatureProfile, draw_unit
+    from footfall.models.imu.override import overridden
     from footfall.recording import write_recording
+    from footfall.scenarios.parameters import parsed, sensor
     from footfall.simulate.from_recording import add_errors
     from footfall.simulate.record import record as record_walk
     from footfall.simulate.walk import footfalls_path, read_walk
@@ -87,7 +95,9 @@ def record(
         raise InputError(
             "record: --bias-shift is for walks: nobody says when a real recording begins to move"
         )
-    worn = draw_unit(load_spec(imu), unit_seed)
+    off = dropped_effects(without, only)
+    spec, constants = sensor(imu, parsed(settings or ()))
+    worn = overridden(draw_unit(spec, unit_seed), constants)
     noise = unit_seed if noise_seed is None else noise_seed
     air = TemperatureProfile.step(indoors, outdoors)
     with ERR.status("recording"):
@@ -97,12 +107,12 @@ def record(
                 worn,
                 seed=noise,
                 temperature=air,
-                without=without or (),
+                without=off,
                 bias_shift=math.radians(bias_shift),
             )
         else:
             assert from_recording is not None
             real, _ = read(from_recording, format, sizes=parse_units(unit or ()), rate_hz=rate)
-            recording = add_errors(real, worn, seed=noise, temperature=air, without=without or ())
+            recording = add_errors(real, worn, seed=noise, temperature=air, without=off)
         write_recording(recording, output)
     say(f"{len(recording.t)} samples: {output}")

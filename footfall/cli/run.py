@@ -7,8 +7,16 @@ from typing import Annotated
 
 import typer
 
-from footfall.cli.options import JsonOption, NoCacheOption, ScenarioArgument
-from footfall.cli.terminal import ERR, OUT, print_json, say
+from footfall.cli.options import (
+    DirectionsOption,
+    JsonOption,
+    NoCacheOption,
+    OnlyOption,
+    ScenarioArgument,
+    SetOption,
+    WithoutOption,
+)
+from footfall.cli.terminal import ERR, OUT, finite, print_json, say
 
 
 def run(
@@ -27,7 +35,11 @@ def run(
         typer.Option(help="IMU on the shoe: a name or your data sheet; the scenario says if left out."),
     ] = None,
     methods: Annotated[
-        str, typer.Option(help="Methods to compare, separated by commas (see `footfall list`).")
+        str,
+        typer.Option(
+            help="Methods to compare, separated by commas: names (see `footfall list`), your own as "
+            "NAME=FILE.py:FUNCTION (docs/methods.md)."
+        ),
     ] = "pdr,hdr",
     units: Annotated[
         int,
@@ -39,6 +51,28 @@ def run(
             min=0, help="So many other noises of each walk's own unit are scored too, for what is chance."
         ),
     ] = 10,
+    detector: Annotated[
+        str | None, typer.Option(help="What tells that the foot is at rest; threshold if left out.")
+    ] = None,
+    bias_time: Annotated[
+        float | None,
+        typer.Option(
+            help="Seconds at rest over which gyro bias is averaged; the scenario says if left out.",
+            callback=finite,
+        ),
+    ] = None,
+    directions: DirectionsOption = None,
+    reference: Annotated[
+        float | None,
+        typer.Option(
+            help="One of them, deg, counter-clockwise from x; if left out, that of the path's begin.",
+            callback=finite,
+            show_default=False,
+        ),
+    ] = None,
+    without: WithoutOption = None,
+    only: OnlyOption = None,
+    settings: SetOption = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for the results; out/SCENARIO if left out.", show_default=False),
@@ -50,33 +84,30 @@ def run(
 
     The folder gets scores.json, every walk, recording and track (Parquet) and the figures (PNG).
     """
+    from footfall.cli.choices import dropped_effects, methods_of, told_directions
     from footfall.cli.progress import perform_showing
+    from footfall.scenarios.parameters import documents, parsed, with_values
     from footfall.scenarios.report import tables as report
     from footfall.scenarios.report.results import results_folder, write_results
-    from footfall.scenarios.run import tasks
-    from footfall.scenarios.scenario import load_scenario
+    from footfall.scenarios.run import parts
 
-    chosen = load_scenario(scenario)
-    names = tuple(dict.fromkeys(name.strip() for name in methods.split(",")))
-    todo = tasks(
-        chosen,
-        walks=walks,
-        seed=seed,
-        imu=imu,
-        methods=names,
-        other_units=units,
-        noises=noises,
-        use_cache=not no_cache,
-    )
-    folder = out or Path("out") / chosen.name
+    chosen = methods_of(methods)
+    base = documents(scenario, imu=imu, methods=chosen, without=dropped_effects(without, only))
+    values = told_directions(chosen, directions, reference)
+    values |= {} if detector is None else {"pdr.detector": detector}
+    values |= {} if bias_time is None else {"pdr.bias_s": bias_time}
+    setup = with_values(base, values | parsed(settings or ())).setup()
+    name = setup.scenario.name
+    todo = parts(setup, walks=walks, seed=seed, other_units=units, noises=noises)
+    folder = out or Path("out") / name
     with results_folder(folder):
-        results = perform_showing(todo)
-        document = report.as_json(chosen.name, results)
+        results = perform_showing(todo, use_cache=not no_cache)
+        document = report.as_json(name, results)
         with ERR.status("writing files and figures"):
             write_results(results, document, folder)
     if as_json:
         print_json(document)
     else:
-        for part in report.run_report(chosen.name, results):
+        for part in report.run_report(name, results):
             OUT.print(part)
     say(f"Scores, walks, tracks and figures are in {folder}")

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.progress import Progress
 
-from footfall.cli.options import NoCacheOption, ScenarioArgument
+from footfall.cli.options import NoCacheOption, ScenarioArgument, SetOption
 from footfall.cli.terminal import ERR, finite, require_output, say
 from footfall.errors import InputError
 
@@ -43,6 +43,7 @@ def walk(
     view: Annotated[
         bool, typer.Option("--view", help="Watch it first in MuJoCo's viewer, which needs a screen.")
     ] = False,
+    settings: SetOption = None,
     no_cache: NoCacheOption = False,
 ) -> None:
     """Walk a scenario once and write the truth: where the IMU was, and what a perfect one would say.
@@ -52,17 +53,19 @@ def walk(
     from dataclasses import replace
 
     from footfall.models.body import MOUNTS
-    from footfall.scenarios.scenario import load_scenario
+    from footfall.scenarios.parameters import documents, parsed, require_areas, with_values
     from footfall.simulate.cache import cached_walk
+    from footfall.simulate.plan import PHYSICS_STEP
     from footfall.simulate.truth import divisor
     from footfall.simulate.walk import write_walk
-    from footfall.simulate.plan import PHYSICS_STEP
+    from footfall.simulate.walking import walk as walk_anew
 
     if output is not None:
         require_output(output, ".parquet")
     elif not view:
         raise InputError("Missing option '--output' / '-o' (see `footfall walk --help`)")
-    plan = load_scenario(scenario).plan(number - 1)
+    require_areas(values := parsed(settings or ()), ("scenario",), "walk")
+    plan = with_values(documents(scenario), values).setup().scenario.plan(number - 1)
     if mount is not None:
         if mount not in MOUNTS:
             raise InputError(f"--mount {mount!r} is unknown, expected one of {', '.join(MOUNTS)}")
@@ -80,8 +83,10 @@ def walk(
         return
     with Progress(console=ERR, transient=True, disable=not ERR.is_terminal) as progress:
         bar = progress.add_task("walking", total=plan.route.length)
-        truth = cached_walk(
-            plan, use_cache=not no_cache, on_progress=lambda metres: progress.update(bar, completed=metres)
-        )
+
+        def walked(metres: float) -> None:
+            progress.update(bar, completed=metres)
+
+        truth = walk_anew(plan, on_progress=walked) if no_cache else cached_walk(plan, on_progress=walked)
     write_walk(truth, output)
     say(f"{len(truth.footfalls.t)} footfalls in {truth.t[-1]:.0f} s: {output}")
