@@ -188,7 +188,12 @@ def _limits(item: Any) -> _Limits:
 
 
 def _places(params: Any, path: tuple[str, ...] = ()) -> Iterator[_Place]:
-    hints = get_type_hints(type(params))
+    if not is_dataclass(params):
+        return
+    try:
+        hints = get_type_hints(type(params))
+    except (NameError, TypeError) as error:
+        raise InputError(f"the types of its fields cannot be read ({error})", type(params).__name__) from None
     for item in fields(params):
         value, here, hint = getattr(params, item.name), (*path, item.name), hints[item.name]
         if is_dataclass(value) and not isinstance(value, type):

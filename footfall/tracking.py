@@ -82,10 +82,10 @@ def track_file(
             if rest is not None:
                 used = rest(recording, used)
             params = replace(params, bias_s=used)
-            track = METHODS[method].run(Reckoning(recording, start, params, counted))
+            track = METHODS[method].track(Reckoning(recording, start, params, counted))
         else:
             blocks = Blocks(path, source)
-            track = METHODS[method].run(StreamedReckoning(run_through, start, counted))
+            track = METHODS[method].track(StreamedReckoning(run_through, start, counted))
             findings = blocks.findings
     except InputError as error:
         raise error.about(path, "recording") from None

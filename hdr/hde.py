@@ -31,7 +31,7 @@ class Hde2010Params:
         that it can keep up with
     theta_w : rad/s, rate of turn over a stride above which it rests, and below which it slows down; infinite
         for a controller that never does
-    directions : the dominant directions, which must be given
+    directions : the dominant directions, of which one must be known
     """
 
     i_c: float = setting(math.radians(0.3), unit="rad", ge=0)
@@ -40,8 +40,6 @@ class Hde2010Params:
 
     def __post_init__(self) -> None:
         require("hde-2010", self)
-        if self.directions.reference is None:
-            raise InputError("hde-2010: directions.reference is missing; only filters learn directions")
 
 
 class Hde2010Trace(NamedTuple):
@@ -67,10 +65,16 @@ def hde_2010(footfalls: Footfalls, params: Hde2010Params | None = None) -> Hde20
     stride, dev its deviation from the nearest dominant direction, and sign(0) = 0. The original was not at
     hand: this is its controller as others describe it, with HDR's attenuator A_i = max(0, 1 - |raw_i| /
     theta_w).
+
+    Raises
+    ------
+    InputError
+        None of the dominant directions is known.
     """
     params = params or Hde2010Params()
     count, base = params.directions.count, params.directions.reference
-    assert base is not None
+    if base is None:
+        raise InputError("directions.reference is missing; only filters learn directions", "hde-2010")
     n = len(footfalls)
     attenuator = np.maximum(0.0, 1.0 - np.abs(footfalls.rate) / params.theta_w)
     stride = np.diff(footfalls.position, axis=0)

@@ -1,11 +1,11 @@
-"""Methods by name: ways from a recording to a track."""
+"""Methods by name: built in, and those of others."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import MappingProxyType
-from typing import Literal
+from typing import Any
 
 from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams
@@ -13,10 +13,10 @@ from footfall.hdr.hde import Hde, Hde2010Params, HdeParams
 from footfall.hdr.hdr import HdrParams
 from footfall.hdr.ihde import Ihde, IhdeParams
 from footfall.hdr.ihde_plus import IhdePlus, IhdePlusParams
-from footfall.hdr.jimenez import FilterHdr, Jimenez, JimenezParams
+from footfall.hdr.jimenez import FilterHdr, FilterHdrParams, Jimenez, JimenezParams
+from footfall.hdr.method import Method
 from footfall.hdr.tracks import (
     UNTOLD,
-    HeadingMethod,
     Reckoning,
     corrected_track,
     hde_2010_track,
@@ -32,49 +32,22 @@ from footfall.pdr.track import Track
 from footfall.recording import Recording
 
 
-@dataclass(frozen=True)
-class Method:
-    """A named way from recording to track.
-
-    Attributes
-    ----------
-    name : as in `METHODS`
-    description : one line for people
-    run : makes the track; takes footfalls or samples from the `Reckoning`, whichever it needs
-    directions : which of its dominant directions can be told: "none" goes by none, "count" learns where they
-        are, "all" takes their number and one of them
-    """
-
-    name: str
-    description: str
-    run: Callable[[Reckoning], Track]
-    directions: Literal["none", "count", "all"] = "none"
+def _learned(reckoning: Reckoning, own: DirectionParams) -> DirectionParams:
+    """The method's own dominant directions; as many as it is told, where it says nothing else."""
+    count = own.count if own.count != UNTOLD.count else reckoning.directions.count
+    return replace(own, count=count)
 
 
-def _counted(reckoning: Reckoning) -> DirectionParams:
-    """Dominant directions, counted from that in which the walk sets out unless they are told."""
-    told = reckoning.directions
-    return told if told.reference is not None else replace(told, reference=reckoning.setting_out)
+def _counted(reckoning: Reckoning, own: DirectionParams) -> DirectionParams:
+    """The same, with one of them: its own, or that it is told, or that in which the walk sets out."""
+    known = (own.reference, reckoning.directions.reference)
+    reference = next((one for one in known if one is not None), None)
+    reference = reckoning.setting_out if reference is None else reference
+    return replace(_learned(reckoning, own), reference=reference)
 
 
-def _hde(reckoning: Reckoning) -> Hde:
-    return Hde(HdeParams(directions=_counted(reckoning)))
-
-
-def _ihde(reckoning: Reckoning) -> Ihde:
-    return Ihde(IhdeParams(directions=_counted(reckoning)))
-
-
-def _learning(reckoning: Reckoning) -> Ihde:
-    return Ihde(IhdeParams(fallback=False, directions=replace(reckoning.directions, reference=None)))
-
-
-def _jimenez(reckoning: Reckoning) -> Jimenez:
-    return Jimenez(JimenezParams(directions=_counted(reckoning)))
-
-
-def _plus(reckoning: Reckoning) -> IhdePlus:
-    return IhdePlus(IhdePlusParams(directions=_counted(reckoning)))
+def _with(params: Any, reckoning: Reckoning) -> Any:
+    return replace(params, directions=_counted(reckoning, params.directions))
 
 
 def on_papers_filter(reckoning: Reckoning) -> Reckoning:
@@ -82,83 +55,149 @@ def on_papers_filter(reckoning: Reckoning) -> Reckoning:
     return replace(reckoning, pdr=replace(reckoning.pdr, detector=Shoe()))
 
 
-def _by_paper(reckoning: Reckoning, method: Callable[[Reckoning], HeadingMethod], *, name: str) -> Track:
+def _pdr(reckoning: Reckoning, _: None) -> Track:
+    return pdr_track(reckoning.footfalls)
+
+
+def _hdr(reckoning: Reckoning, params: HdrParams) -> Track:
+    return hdr_track(reckoning.footfalls, params)
+
+
+def _iez(reckoning: Reckoning, settings: FilterSettings) -> Track:
+    return iez_track(reckoning, settings, name="iez")
+
+
+def _iez_paper(reckoning: Reckoning, settings: FilterSettings) -> Track:
+    return iez_track(on_papers_filter(reckoning), settings, name="iez-paper")
+
+
+def _hdr_filter(reckoning: Reckoning, params: FilterHdrParams) -> Track:
+    return corrected_track(reckoning, FilterHdr(params), name="hdr-filter")
+
+
+def _hde_2010(reckoning: Reckoning, params: Hde2010Params) -> Track:
+    return hde_2010_track(reckoning.footfalls, _with(params, reckoning))
+
+
+def _hde(reckoning: Reckoning, params: HdeParams) -> Track:
+    return corrected_track(reckoning, Hde(_with(params, reckoning)), name="hde")
+
+
+def _ihde(reckoning: Reckoning, params: IhdeParams) -> Track:
+    return corrected_track(reckoning, Ihde(_with(params, reckoning)), name="ihde")
+
+
+def _ihde_learned(reckoning: Reckoning, params: IhdeParams) -> Track:
+    learning = replace(params, directions=_learned(reckoning, params.directions))
+    return corrected_track(reckoning, Ihde(learning), name="ihde-learned")
+
+
+def _jimenez(reckoning: Reckoning, params: JimenezParams) -> Track:
+    return corrected_track(reckoning, Jimenez(_with(params, reckoning)), name="ihde-jimenez")
+
+
+def _ihde_plus(reckoning: Reckoning, params: IhdePlusParams) -> Track:
+    return corrected_track(reckoning, IhdePlus(_with(params, reckoning)), name="ihde-plus")
+
+
+def _hde_paper(reckoning: Reckoning, params: HdeParams) -> Track:
     given = on_papers_filter(reckoning)
-    return corrected_track(given, method(given), FilterSettings.paper(), name=name)
+    return corrected_track(given, Hde(_with(params, given)), FilterSettings.paper(), name="hde-paper")
+
+
+def _ihde_paper(reckoning: Reckoning, params: IhdeParams) -> Track:
+    given = on_papers_filter(reckoning)
+    return corrected_track(given, Ihde(_with(params, given)), FilterSettings.paper(), name="ihde-paper")
 
 
 METHODS: Mapping[str, Method] = MappingProxyType(
     {
         method.name: method
         for method in (
-            Method("pdr", "dead reckoning; heading from the gyro alone", lambda r: pdr_track(r.footfalls)),
-            Method("hdr", "Heuristic Drift Reduction (2008), section 3", lambda r: hdr_track(r.footfalls)),
+            Method("pdr", "dead reckoning; heading from the gyro alone", _pdr, needs="footfalls"),
+            Method(
+                "hdr", "Heuristic Drift Reduction (2008), section 3", _hdr, HdrParams(), needs="footfalls"
+            ),
             Method(
                 "hdr-basic",
                 "Heuristic Drift Reduction, the basic controller of section 2",
-                lambda r: hdr_track(r.footfalls, HdrParams.basic(), name="hdr-basic"),
+                _hdr,
+                HdrParams.basic(),
+                needs="footfalls",
             ),
             Method(
                 "iez",
                 "error-state filter, zero velocity once a stance; heading from the gyro alone",
-                lambda r: iez_track(r, FilterSettings(), name="iez"),
+                _iez,
+                FilterSettings(),
             ),
             Method(
                 "iez-paper",
                 "IEZ as in Deng et al. (2018): zero velocity at every sample that is still by the GLRT",
-                lambda r: iez_track(on_papers_filter(r), FilterSettings.paper(), name="iez-paper"),
+                _iez_paper,
+                FilterSettings.paper(),
             ),
             Method(
                 "hdr-filter",
                 "iez, and no turn where the heading hardly changes (Jimenez 2010)",
-                lambda r: corrected_track(r, FilterHdr(), name="hdr-filter"),
+                _hdr_filter,
+                FilterHdrParams(),
             ),
             Method(
                 "hde-2010",
                 "Heuristic Drift Elimination (2010) after pdr: stepwise towards dominant directions",
-                lambda r: hde_2010_track(r.footfalls, Hde2010Params(directions=_counted(r))),
+                _hde_2010,
+                Hde2010Params(directions=UNTOLD),
+                needs="footfalls",
                 directions="all",
             ),
             Method(
                 "hde",
                 "iez, and always the nearest dominant direction for the heading",
-                lambda r: corrected_track(r, _hde(r), name="hde"),
+                _hde,
+                HdeParams(directions=UNTOLD),
                 directions="all",
             ),
             Method(
                 "ihde",
                 "iez, and IHDE (Deng et al. 2018): dominant directions or the mean heading, on straights",
-                lambda r: corrected_track(r, _ihde(r), name="ihde"),
+                _ihde,
+                IhdeParams(directions=UNTOLD),
                 directions="all",
             ),
             Method(
                 "ihde-learned",
                 "ihde with directions learned from the walk, and no mean heading",
-                lambda r: corrected_track(r, _learning(r), name="ihde-learned"),
+                _ihde_learned,
+                IhdeParams(fallback=False, directions=UNTOLD),
                 directions="count",
             ),
             Method(
                 "ihde-jimenez",
                 "iez, and iHDE (Jimenez 2011): dominant directions on straights, trusted by their nearness",
-                lambda r: corrected_track(r, _jimenez(r), name="ihde-jimenez"),
+                _jimenez,
+                JimenezParams(directions=UNTOLD),
                 directions="all",
             ),
             Method(
                 "ihde-plus",
                 "iez, and IHDE+: dominant directions as far as straight and direction are likely",
-                lambda r: corrected_track(r, _plus(r), name="ihde-plus"),
+                _ihde_plus,
+                IhdePlusParams(directions=UNTOLD),
                 directions="all",
             ),
             Method(
                 "hde-paper",
                 "hde on the filter of iez-paper",
-                lambda r: _by_paper(r, _hde, name="hde-paper"),
+                _hde_paper,
+                HdeParams(directions=UNTOLD),
                 directions="all",
             ),
             Method(
                 "ihde-paper",
                 "ihde on the filter of iez-paper",
-                lambda r: _by_paper(r, _ihde, name="ihde-paper"),
+                _ihde_paper,
+                IhdeParams(directions=UNTOLD),
                 directions="all",
             ),
         )
@@ -166,14 +205,28 @@ METHODS: Mapping[str, Method] = MappingProxyType(
 )
 
 
+def find_method(use: str | Method | Callable[..., Track]) -> Method:
+    """A method by its name, or as it is.
+
+    Raises
+    ------
+    InputError
+        No method of that name.
+    """
+    if isinstance(use, Method):
+        return use
+    if not isinstance(use, str) or use not in METHODS:
+        raise InputError(f"method {use!r} is unknown, expected one of {', '.join(METHODS)}")
+    return METHODS[use]
+
+
 def require_methods(names: Iterable[str]) -> None:
     """Raise InputError when a method of any of these names does not exist."""
     for name in names:
-        if name not in METHODS:
-            raise InputError(f"method {name!r} is unknown, expected one of {', '.join(METHODS)}")
+        find_method(name)
 
 
-def told_directions(name: str, directions: int | None, reference: float | None) -> DirectionParams:
+def told_directions(method: str | Method, directions: int | None, reference: float | None) -> DirectionParams:
     """The dominant directions that a method is told: how many, and one of them (rad); None for untold.
 
     Raises
@@ -183,16 +236,18 @@ def told_directions(name: str, directions: int | None, reference: float | None) 
     """
     if directions is None and reference is None:
         return UNTOLD
-    takes = METHODS[name].directions
-    if takes == "none":
+    found = find_method(method)
+    if found.directions == "none":
         able = ", ".join(method.name for method in METHODS.values() if method.directions != "none")
-        raise InputError(f"method {name!r} goes by no dominant directions; these do: {able}")
-    if takes == "count" and reference is not None:
-        raise InputError(f"method {name!r} learns where its dominant directions are, and cannot be told one")
+        raise InputError(f"method {found.name!r} goes by no dominant directions; these do: {able}")
+    if found.directions == "count" and reference is not None:
+        raise InputError(
+            f"method {found.name!r} learns where its dominant directions are, and cannot be told one"
+        )
     return DirectionParams(UNTOLD.count if directions is None else directions, reference)
 
 
-def tracks(reckoning: Reckoning, methods: Iterable[str]) -> dict[str, Track]:
+def tracks(reckoning: Reckoning, methods: Iterable[str | Method]) -> dict[str, Track]:
     """Apply several methods to one recording, which is dead-reckoned once.
 
     Raises
@@ -200,14 +255,13 @@ def tracks(reckoning: Reckoning, methods: Iterable[str]) -> dict[str, Track]:
     InputError
         No method of that name; or what `dead_reckon` refuses.
     """
-    names = list(methods)
-    require_methods(names)
+    found = [find_method(method) for method in methods]
     origin, pdr, start = reckoning.recording.meta, reckoning.pdr, reckoning.start
-    return {name: told(METHODS[name].run(reckoning), origin, pdr, start) for name in names}
+    return {method.name: told(method.track(reckoning), origin, pdr, start) for method in found}
 
 
 def track(
-    recording: Recording, method: str, start: StartPose | None = None, pdr: PdrParams | None = None
+    recording: Recording, method: str | Method, start: StartPose | None = None, pdr: PdrParams | None = None
 ) -> Track:
     """Apply one method to a recording.
 
@@ -217,4 +271,5 @@ def track(
         No method of that name; or what `dead_reckon` refuses.
     """
     reckoning = Reckoning(recording, start or StartPose(), pdr or PdrParams())
-    return tracks(reckoning, [method])[method]
+    (made,) = tracks(reckoning, [method]).values()
+    return made

@@ -107,7 +107,7 @@ def measure(reals: Sequence[Real]) -> tuple[list[Judged], dict[tuple[str, str], 
         given = reckoning(real, detector)
         for name, method in METHODS.items():
             try:
-                track = method.run(given)
+                track = method.track(given)
             except InputError as error:
                 found.append(Judged(real.name, detector, name, refused=str(error)))
                 continue
@@ -196,14 +196,14 @@ def with_drift(reals: Sequence[Real], units: int, imu: str) -> list[Drifted]:
     air, spec, found = TemperatureProfile.step(20.0, -5.0), load_spec(imu), []
     for real in progress(reals, description="added drift", transient=True):
         rest = still_time(real.recording)
-        clean = METHODS["pdr"].run(Reckoning(real.recording, pdr=PdrParams(bias_s=rest)))
+        clean = METHODS["pdr"].track(Reckoning(real.recording, pdr=PdrParams(bias_s=rest)))
         heading: dict[str, list[float]] = {name: [] for name in METHODS}
         error: dict[str, list[float]] = {name: [] for name in METHODS}
         for seed in range(units):
             worse = add_errors(real.recording, draw_unit(spec, seed), seed=seed, temperature=air)
             given = Reckoning(worse, pdr=PdrParams(bias_s=rest))
             for name, method in METHODS.items():
-                track = method.run(given)
+                track = method.track(given)
                 off = np.interp(track.t, clean.t, clean.heading) - track.heading
                 heading[name].append(float(np.degrees(abs(off[-1] - off[0]))))
                 error[name].append(judge(real, "threshold", name, track).error_m)
@@ -267,7 +267,7 @@ def clipped_on_purpose(reals: Sequence[Real]) -> Sheet:
 def dead_reckoned(real: Real, recording: Recording, bias_s: float) -> Judged:
     """`pdr` of a recording that was made of `real`."""
     given = Reckoning(recording, pdr=PdrParams(bias_s=bias_s))
-    return judge(real, "threshold", "pdr", METHODS["pdr"].run(given))
+    return judge(real, "threshold", "pdr", METHODS["pdr"].track(given))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -188,7 +188,7 @@ def test_the_controller_of_2010_has_no_favourite_side(seed):
 
 def test_the_controller_of_2010_learns_no_directions():
     with pytest.raises(InputError, match="only filters learn directions"):
-        Hde2010Params(directions=DirectionParams(reference=None))
+        hde_2010(footfalls(np.zeros(9)), Hde2010Params(directions=DirectionParams(reference=None)))
 
 
 # Jimenez
