@@ -25,8 +25,8 @@ from footfall.models.route import Route
 from footfall.pdr.footfalls import Footfalls
 from footfall.scenarios.judge.papers import UNCORRECTED_AVERAGE_RANGE, UNCORRECTED_FINAL_RANGE
 from footfall.scenarios.judge.score import compare
-from footfall.scenarios.run import start_pose
 from footfall.scenarios.scenario import Scenario
+from footfall.scenarios.trial import start_pose
 from footfall.simulate.cache import cached_walk
 from footfall.simulate.plan import versions
 from footfall.simulate.record import record

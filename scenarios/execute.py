@@ -7,8 +7,9 @@ import os
 import signal
 import tempfile
 import threading
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
@@ -63,7 +64,7 @@ def execute(
     use_cache: bool = True,
     keep: Collection[int] = (),
     on_progress: Callable[[Progress], None] | None = None,
-) -> Iterator[Outcome]:
+) -> Generator[Outcome, None, None]:
     """Perform every trial and yield the outcomes in order.
 
     Where the generator is closed, or something breaks, workers are ended at once. What the physics, a
@@ -123,9 +124,10 @@ def _here(
         walk = _walk(group.trials[0], folder, walked)
         walked(group.trials[0].plan.route.length)
         for index, trial in zip(group.index, group.trials, strict=True):
-            yield index, _one(trial, walk, index in keep)
+            outcome = _one(trial, walk, index in keep)
             progress.done += 1
             report(progress)
+            yield index, outcome
 
 
 def _spread(
@@ -145,25 +147,25 @@ def _spread(
         trying: set[Future[Any]] = set()
         while walking or trying:
             finished, _ = wait([*walking, *trying], timeout=0.2, return_when=FIRST_COMPLETED)
+            ready: list[tuple[int, Outcome]] = []
             for future in finished:
                 if future in walking:
                     at, refused = walking.pop(future), future.result()
                     metres[at] = work[at].trials[0].plan.route.length
                     if refused is not None:
-                        progress.done += len(work[at].trials)
-                        for index, trial in zip(work[at].index, work[at].trials, strict=True):
-                            yield index, failed(trial, refused)
+                        lost = zip(work[at].index, work[at].trials, strict=True)
+                        ready += [(index, failed(trial, refused)) for index, trial in lost]
                         continue
                     for part in _chunks(work[at]):
                         kept = [index in keep for index in part.index]
                         trying.add(pool.submit(_chunk_job, part, kept, folder))
                 else:
                     trying.remove(future)
-                    found = future.result()
-                    progress.done += len(found)
-                    yield from found
+                    ready += future.result()
             progress.metres[:] = metres
+            progress.done += len(ready)
             report(progress)
+            yield from ready
 
 
 def _chunks(group: _Group) -> Iterator[_Group]:
@@ -255,6 +257,11 @@ def worker_pool(workers: int, shared: int = 0) -> Iterator[tuple[ProcessPoolExec
             finally:
                 signal.pthread_sigmask(signal.SIG_SETMASK, mask)
             yield pool, numbers
+        except BrokenProcessPool as error:
+            raise InputError(
+                'a worker ended at once: a script must call this below `if __name__ == "__main__":`, or '
+                "with workers=1"
+            ) from error
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             for worker in set(multiprocessing.active_children()) - others:

@@ -11,10 +11,9 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
-from footfall.hdr.method import Method
-
 from footfall.addresses import edited, keys, parse, pattern
 from footfall.errors import InputError
+from footfall.hdr.method import Method
 from footfall.hdr.methods import METHODS
 from footfall.models.imu import ImuSpec, SheetDocument, build_spec, read_sheet
 from footfall.models.imu.override import CONSTANTS, overridden

@@ -7,11 +7,9 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from footfall.hdr.method import Method
-from footfall.simulate.plan import Plan
-
 from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams
+from footfall.hdr.method import Method
 from footfall.hdr.methods import find_method, tracks
 from footfall.hdr.tracks import Reckoning
 from footfall.models.imu import (
@@ -32,7 +30,8 @@ from footfall.scenarios.judge.score import Score, score
 from footfall.scenarios.scenario import Scenario
 from footfall.simulate.budget import DriftBudget
 from footfall.simulate.cache import cached_walk
-from footfall.simulate.record import record, record_with_budget
+from footfall.simulate.plan import Plan
+from footfall.simulate.record import BIAS_TIME, record, record_with_budget
 from footfall.simulate.walk import Walk
 
 DEFAULT_METHODS = ("pdr", "hdr")
@@ -219,7 +218,7 @@ def setup(
     )
 
 
-def start_pose(walk: Walk, bias_s: float) -> StartPose:
+def start_pose(walk: Walk, bias_s: float = BIAS_TIME) -> StartPose:
     """The known start: the IMU's true pose at rest, at the last sample of the first `bias_s` seconds.
 
     Raises

@@ -14,8 +14,9 @@ from footfall.pdr.track import Track
 from footfall.scenarios.judge.papers import IHDE_TABLE_2
 from footfall.scenarios.report.figures import colours_of, head, label_of, maps, new_panels, save
 from footfall.scenarios.report.heading_figures import evaluation
-from footfall.scenarios.run import Result, Task, perform, reckoning
+from footfall.scenarios.run import Part, Result, perform_run
 from footfall.scenarios.scenario import Scenario
+from footfall.scenarios.trial import Trial, reckoning, setup
 
 if TYPE_CHECKING:
     from benchmarks.papers.ihde_table2 import Tuned
@@ -25,8 +26,9 @@ _SHOWN = ("iez", "hde", "ihde", "ihde-plus")
 
 def _result(scenario: Scenario, seed: int, tuned: Tuned) -> Result:
     """One walk with the unit of its seed, navigated as tuned."""
-    result = perform(Task(scenario, seed - scenario.seeds.base, seed, seed, seed, scenario.imu, ("pdr",)))
-    given, ways = reckoning(scenario, result.walk, result.recording), tuned.ways()
+    made = setup(scenario, methods=("pdr",))
+    (result,) = perform_run([Part(Trial(made, seed - scenario.seeds.base, seed, seed, seed))])
+    given, ways = reckoning(made, result.walk, result.recording), tuned.ways()
     tracks: dict[str, Track] = {name: ways[name].track(given) for name in _SHOWN}
     return replace(result, tracks=tracks)
 

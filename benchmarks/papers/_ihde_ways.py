@@ -29,8 +29,8 @@ from footfall.models.imu import draw_unit, load_spec
 from footfall.pdr.filter.ins import FilterSettings
 from footfall.pdr.track import Track
 from footfall.scenarios.judge.score import score
-from footfall.scenarios.run import reckoning
 from footfall.scenarios.scenario import Scenario
+from footfall.scenarios.trial import reckoning, setup
 from footfall.simulate.cache import cached_walk
 from footfall.simulate.record import record
 
@@ -107,7 +107,7 @@ def navigate(job: Job) -> np.ndarray | str:
             temperature=scenario.temperature_of(number),
             bias_shift=bias * scenario.unit_bias_shift(unit),
         )
-        return reckoning(scenario, walk, recording)
+        return reckoning(setup(scenario), walk, recording)
 
     errors = np.empty((len(job.units), len(job.ways), 3))
     for i, unit in enumerate(job.units):

@@ -32,8 +32,8 @@ from footfall.pdr.reckoning import PdrParams
 from footfall.pdr.rest import still_time
 from footfall.scenarios.judge.papers import IHDE_TABLE_2, range_text
 from footfall.scenarios.judge.score import compare, score
-from footfall.scenarios.run import reckoning, start_pose
 from footfall.scenarios.scenario import Scenario, load_scenario
+from footfall.scenarios.trial import reckoning, setup, start_pose
 from footfall.simulate.cache import cached_walk
 from footfall.simulate.record import record
 
@@ -137,7 +137,7 @@ def walk_test(job: Job) -> dict[str, float]:
     errors = {}
     for name, settings in filters().items():
         for unit, signal in (("", recording), (", perfect IMU", still)):
-            found = on_papers_filter(reckoning(scenario, walk, signal)).filtered(settings)
+            found = on_papers_filter(reckoning(setup(scenario), walk, signal)).filtered(settings)
             errors[name + unit] = score(filter_track(found, settings, name=name), walk).return_error_pct
     return errors
 

@@ -26,8 +26,8 @@ from footfall.models.imu import draw_unit, load_spec
 from footfall.pdr.footfalls import Footfalls
 from footfall.scenarios.judge.score import compare
 from footfall.scenarios.path import PathSpec, build_path
-from footfall.scenarios.run import start_pose
 from footfall.scenarios.scenario import Scenario, load_scenario
+from footfall.scenarios.trial import start_pose
 from footfall.simulate.cache import cached_walk
 from footfall.simulate.plan import Plan
 from footfall.simulate.record import record

@@ -19,8 +19,8 @@ from footfall.hdr.methods import tracks
 from footfall.models.imu import draw_unit, load_spec
 from footfall.pdr.track import Track
 from footfall.scenarios.judge.score import compare, score
-from footfall.scenarios.run import reckoning
 from footfall.scenarios.scenario import load_scenario, stock_scenarios
+from footfall.scenarios.trial import reckoning, setup
 from footfall.simulate.cache import cached_walk
 from footfall.simulate.record import record
 from footfall.simulate.walk import Walk
@@ -57,7 +57,7 @@ def measure(job: tuple[str, int]) -> list[Own]:
     scenario = load_scenario(name)
     truth = cached_walk(scenario.plan(number))
     recording = record(truth, draw_unit(load_spec("perfect"), 1), seed=1)
-    found = tracks(reckoning(scenario, truth, recording), METHODS)
+    found = tracks(reckoning(setup(scenario), truth, recording), METHODS)
     return [own(name, number + 1, method, track, truth) for method, track in found.items()]
 
 

@@ -17,6 +17,7 @@ from footfall import __version__
 from footfall.cli.allan import allan
 from footfall.cli.export import export
 from footfall.cli.list import list_
+from footfall.cli.parameters import parameters
 from footfall.cli.record import record
 from footfall.cli.render import render
 from footfall.cli.run import run
@@ -52,7 +53,7 @@ def _main(
         print(context.get_help())
 
 
-for command in (list_, run, walk, render, record, track, score, export, allan):
+for command in (list_, parameters, run, walk, render, record, track, score, export, allan):
     app.command(command.__name__.rstrip("_"))(command)
 
 

@@ -110,7 +110,8 @@ def _duration(result: Result) -> float:
 
 def run_report(name: str, results: Sequence[Result]) -> list[RenderableType]:
     """What a run of the scenario `name` prints for people."""
-    first, distance = results[0].trial.setup, np.mean([_distance(result) for result in results])
+    own, distance = results[0].trial, np.mean([_distance(result) for result in results])
+    first = own.setup
     count = "1 walk" if len(results) == 1 else f"{len(results)} walks"
     parts: list[RenderableType] = [
         Text.assemble((name, "bold"), f": {count} of {distance:.0f} m, IMU {first.imu}"),
@@ -119,7 +120,7 @@ def run_report(name: str, results: Sequence[Result]) -> list[RenderableType]:
     ]
     if name == "closed-loop":
         parts.append(paper_table())
-        if first.unit_seed in (first.scenario.seeds.units or ()):
+        if own.unit_seed in (first.scenario.seeds.units or ()):
             parts.append(Text(_CHOSEN_UNITS, style="dim"))
     if name in IHDE_TABLE_2:
         parts.append(ihde_table(name, results))

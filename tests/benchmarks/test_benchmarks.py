@@ -21,8 +21,8 @@ from footfall.hdr.hdr import HdrParams, headings
 from footfall.hdr.methods import Reckoning, hdr_track, pdr_track
 from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
 from footfall.scenarios.judge.score import compare, score
-from footfall.scenarios.run import start_pose
 from footfall.scenarios.scenario import load_scenario
+from footfall.scenarios.trial import start_pose
 from footfall.simulate.cache import cached_walk
 from footfall.simulate.record import record
 from footfall.simulate.walk import TrueFootfalls

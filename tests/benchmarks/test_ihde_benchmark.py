@@ -10,8 +10,8 @@ from benchmarks.papers import _ihde_page, _ihde_ways, ihde_table2
 from footfall.hdr.methods import tracks
 from footfall.models.imu import draw_unit, load_spec
 from footfall.scenarios.judge.score import score
-from footfall.scenarios.run import reckoning
 from footfall.scenarios.scenario import build_scenario, load_scenario, read_document
+from footfall.scenarios.trial import reckoning, setup
 from footfall.simulate.cache import cached_walk
 from footfall.simulate.record import record
 
@@ -27,7 +27,7 @@ def test_its_ways_are_the_methods_of_those_names(short_walk, name):
     recording = record(
         short_walk, draw_unit(load_spec("nimu"), 3), seed=3, bias_shift=scenario.unit_bias_shift(3)
     )
-    given = reckoning(scenario, short_walk, recording)
+    given = reckoning(setup(scenario), short_walk, recording)
     expected = score(tracks(given, [name])[name], short_walk)
     assert score(tuned.ways()[name].track(given), short_walk) == expected
 

@@ -9,7 +9,7 @@ from footfall.hdr.methods import Reckoning, tracks
 from footfall.models.imu import draw_unit, load_spec
 from footfall.pdr.track import write_track
 from footfall.scenarios.judge.score import score
-from footfall.scenarios.run import start_pose
+from footfall.scenarios.trial import start_pose
 from footfall.simulate.record import record
 from footfall.simulate.walk import write_walk
 from tests.scenarios.test_score import elsewhere, planar_walk, reckoned

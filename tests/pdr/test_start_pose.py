@@ -14,7 +14,7 @@ from footfall.pdr.reckoning import PdrParams, StartPose, dead_reckon, detect
 from footfall.pdr.stream import dead_reckon_blocks
 from footfall.recording import Recording
 from footfall.scenarios.judge.score import compare, score
-from footfall.scenarios.run import start_pose
+from footfall.scenarios.trial import start_pose
 from footfall.simulate.record import BIAS_TIME, record
 from tests.helpers.synthetic import synthetic_walk
 from tests.helpers.synthetic_foot import walk

@@ -14,16 +14,18 @@ from footfall.scenarios.judge.score import Score
 from footfall.scenarios.report.figures import colours_of, heading_errors, maps
 from footfall.scenarios.report.heading_figures import evaluation, heading_figures, judging
 from footfall.scenarios.report.tables import run_report
-from footfall.scenarios.run import perform, tasks
+from footfall.scenarios.run import parts, perform_run
 from footfall.scenarios.scenario import load_scenario
+from footfall.scenarios.trial import setup
 
 METHODS = ("iez", "hde", "ihde")
 
 
 @pytest.fixture(scope="module")
 def walked(workshop):
-    (task,) = tasks(load_scenario(workshop / "short.toml"), walks=1, methods=METHODS)
-    return perform(task)
+    made = setup(load_scenario(workshop / "short.toml"), methods=METHODS)
+    (result,) = perform_run(parts(made, walks=1), workers=1)
+    return result
 
 
 def scored(walked, errors):
@@ -32,7 +34,7 @@ def scored(walked, errors):
     for number, error in enumerate(errors):
         score = Score(1.0, 2.0, error, 0.1, 0.5, 0.7)
         scores = dict.fromkeys((*METHODS, "ihde-paper"), score)
-        results.append(replace(walked, task=replace(walked.task, number=number), scores=scores))
+        results.append(replace(walked, trial=replace(walked.trial, number=number), scores=scores))
     return results
 
 

@@ -14,8 +14,9 @@ from footfall.scenarios.judge.papers import HDR_TABLE_2, HDR_TABLE_2_MEAN
 from footfall.scenarios.judge.score import Score, mean_score
 from footfall.scenarios.report import figures
 from footfall.scenarios.report.tables import as_json, extent, paper_table, path_line, run_report, spread
-from footfall.scenarios.run import perform, tasks
+from footfall.scenarios.run import parts, perform_run
 from footfall.scenarios.scenario import build_scenario, load_scenario
+from footfall.scenarios.trial import setup
 
 NOISY = ((1.0, 9.0, 2.0), (41.0, 29.0, 20.0), (7.0, 7.0, 7.0))  # deg, errors of a walk by further noise
 
@@ -31,8 +32,9 @@ def printed(*parts, width=80):
 @pytest.fixture(scope="module")
 def walked(workshop):
     scenario = load_scenario(workshop / "short.toml")
-    (task,) = tasks(scenario, walks=1, methods=("pdr", "hdr", "hdr-basic"), other_units=1)
-    return perform(task)
+    made = setup(scenario, methods=("pdr", "hdr", "hdr-basic"))
+    (result,) = perform_run(parts(made, walks=1, other_units=1), workers=1)
+    return result
 
 
 def several(walked, walks, methods=("pdr", "hdr"), factor=1.0):
@@ -44,11 +46,17 @@ def several(walked, walks, methods=("pdr", "hdr"), factor=1.0):
             name: Score(*(factor * (30 * number + 10 * i + j + 0.5) for j in range(6)))
             for i, name in enumerate(methods)
         }
-        task = replace(walked.task, number=number, unit_seed=1000 + number)
+        trial = replace(walked.trial, number=number, unit_seed=1000 + number)
         noises = tuple(dict.fromkeys(methods, Score(*([factor * at] * 6))) for at in NOISY[number % 3])
         given = {"scores": scores, "others": (scores,), "noises": noises}
-        results.append(replace(walked, task=task, tracks=tracks, **given))
+        results.append(replace(walked, trial=trial, tracks=tracks, **given))
     return results
+
+
+def of_scenario(result, scenario):
+    """The same result, said to be of this scenario."""
+    made = replace(result.trial.setup, scenario=scenario)
+    return replace(result, trial=replace(result.trial, setup=made))
 
 
 def pair(score):
@@ -62,8 +70,8 @@ def test_tables_keep_every_figure_on_80_columns(walked, walks, methods):
     assert "…" not in text
     assert max(map(len, text.splitlines())) <= 80
     for result in results:
-        (line,) = [line for line in text.splitlines() if line.split()[1:2] == [str(result.task.unit_seed)]]
-        assert line.split()[0] == str(result.task.number + 1)
+        (line,) = [line for line in text.splitlines() if line.split()[1:2] == [str(result.trial.unit_seed)]]
+        assert line.split()[0] == str(result.trial.number + 1)
         assert [pair(score) in line for score in result.scores.values()] == [True] * methods
     for name in results[0].scores:
         assert pair(mean_score([result.scores[name] for result in results])) in text
@@ -116,7 +124,7 @@ def test_other_noises_are_told_by_walk_and_of_the_mean(walked):
     assert document["walks"][1]["other_noises"]["count"] == document["other_noises"]["count"] == 3
     assert document["walks"][1]["other_noises"]["methods"]["hdr"][key] == extent([20.0, 29.0, 41.0])
     assert document["other_noises"]["methods"]["hdr"][key] == extent([49 / 3, 45 / 3, 29 / 3])
-    assert document["walks"][1]["noise"] == results[1].task.noise_seed
+    assert document["walks"][1]["noise"] == results[1].trial.noise_seed
     silent = [replace(result, noises=()) for result in results]
     assert "other noises" not in printed(*run_report("short", silent))
     assert "other_noises" not in json.dumps(as_json("short", silent))
@@ -136,8 +144,8 @@ def test_the_papers_table_is_printed_for_its_own_walk_alone(walked):
 def test_chosen_units_are_owned_up_to(walked):
     results = several(walked, 1)
     assert "kept because" not in printed(*run_report("closed-loop", results))
-    chosen = results[0].task.scenario.changed("seeds", units=[1000])
-    results = [replace(results[0], task=replace(results[0].task, scenario=chosen))]
+    chosen = results[0].trial.setup.scenario.changed("seeds", units=[1000])
+    results = [of_scenario(results[0], chosen)]
     assert "kept because" in printed(*run_report("closed-loop", results))
 
 
@@ -146,7 +154,7 @@ def test_the_document_holds_every_walk_and_the_means(walked):
     document = json.loads(json.dumps(as_json("short", results), allow_nan=False))
     assert [row["unit"] for row in document["walks"]] == [1000, 1001, 1002]
     for row, result in zip(document["walks"], results, strict=True):
-        assert row["seed"] == result.task.walk_seed
+        assert row["seed"] == result.trial.walk_seed
         assert row["subject"] == "reference"
         assert row["footfalls"] == len(result.tracks["pdr"])
         assert row["methods"] == {name: asdict(score) for name, score in result.scores.items()}
@@ -193,8 +201,8 @@ def test_nothing_in_a_figure_hides_another(walked, walks, draw):
     """Panels, their names and the head keep clear of each other and inside the figure; long names wrap."""
     results = several(walked, walks)
     name = "a-scenario-of-a-name-that-goes-on-and-on-for-ever-and-a-day"
-    scenario = build_scenario(replace(walked.task.scenario.document, name=name))
-    results = [replace(result, task=replace(result.task, scenario=scenario)) for result in results]
+    scenario = build_scenario(replace(walked.trial.setup.scenario.document, name=name))
+    results = [of_scenario(result, scenario) for result in results]
     figure = draw(results)
     figure.canvas.draw()
     renderer = figure.canvas.get_renderer()

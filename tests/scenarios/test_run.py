@@ -15,16 +15,9 @@ from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
 from footfall.recording import read_recording
 from footfall.scenarios.judge.score import score
 from footfall.scenarios.report.results import results_folder, write_results
-from footfall.scenarios.run import (
-    OTHER_NOISES_FROM,
-    OTHER_UNITS_FROM,
-    perform,
-    perform_all,
-    reckoning,
-    start_pose,
-    tasks,
-)
+from footfall.scenarios.run import OTHER_NOISES_FROM, OTHER_UNITS_FROM, parts, perform_run
 from footfall.scenarios.scenario import load_scenario
+from footfall.scenarios.trial import reckoning, setup, start_pose
 from footfall.simulate.record import record
 from footfall.simulate.walk import read_walk
 from footfall.tables import read_table
@@ -39,12 +32,17 @@ def files_of(walk, *methods):
     }
 
 
+def short_part(workshop):
+    """One walk of the short scenario, two further units and three further noises."""
+    made = setup(load_scenario(workshop / "short.toml"), methods=("pdr", "hdr", "hdr-basic"))
+    return parts(made, walks=1, other_units=2, noises=3)
+
+
 @pytest.fixture(scope="module")
 def done(workshop):
-    """One walk of the short scenario, all methods, two further units and three further noises."""
-    scenario = load_scenario(workshop / "short.toml")
-    (task,) = tasks(scenario, walks=1, methods=("pdr", "hdr", "hdr-basic"), other_units=2, noises=3)
-    return perform(task)
+    """What it gave."""
+    (result,) = perform_run(short_part(workshop), workers=1)
+    return result
 
 
 # What is to be done
@@ -52,32 +50,49 @@ def done(workshop):
 
 def test_seeds_units_and_subjects_of_the_walks(workshop):
     scenario = load_scenario(workshop / "short.toml")
-    todo = tasks(scenario, other_units=5)
-    assert [(task.number, task.walk_seed, task.unit_seed) for task in todo] == [(0, 3, 3), (1, 4, 4)]
+
+    def own(scenario=scenario, imu=None, **keys):
+        return [part.own for part in parts(setup(scenario, imu=imu), **keys)]
+
+    assert [(one.number, one.walk_seed, one.unit_seed) for one in own(other_units=5)] == [
+        (0, 3, 3),
+        (1, 4, 4),
+    ]
     chosen = scenario.changed("seeds", units=[70, 90])
-    assert [task.unit_seed for task in tasks(chosen, walks=3)] == [70, 90, 70]
+    assert [one.unit_seed for one in own(chosen, walks=3)] == [70, 90, 70]
     # The chosen units belong to the scenario's own sheet and walks.
-    assert [task.unit_seed for task in tasks(chosen, imu="perfect")] == [3, 4]
-    assert [(task.walk_seed, task.unit_seed) for task in tasks(chosen, seed=20)] == [(20, 20), (21, 21)]
-    assert [scenario.plan(task.number).subject.name for task in todo] == ["reference", "shorter"]
+    assert [one.unit_seed for one in own(chosen, imu="perfect")] == [3, 4]
+    assert [(one.walk_seed, one.unit_seed) for one in own(chosen, seed=20)] == [(20, 20), (21, 21)]
+    assert [one.plan.subject.name for one in own()] == ["reference", "shorter"]
+    assert [one.plan.seed for one in own(seed=20)] == [20, 21]
 
 
 @pytest.mark.parametrize(("walks", "units"), [(1, 3), (2, 5), (4, 3), (3, 0)])
 def test_every_other_unit_is_scored_once(workshop, walks, units):
-    todo = tasks(load_scenario(workshop / "short.toml"), walks=walks, other_units=units)
-    seeds = [seed for task in todo for seed in task.others]
-    assert sorted(seeds) == list(range(OTHER_UNITS_FROM, OTHER_UNITS_FROM + units))
-    assert max(len(task.others) for task in todo) - min(len(task.others) for task in todo) <= 1
+    todo = parts(setup(load_scenario(workshop / "short.toml")), walks=walks, other_units=units)
+    others = [one for part in todo for one in part.others]
+    assert sorted(one.unit_seed for one in others) == list(range(OTHER_UNITS_FROM, OTHER_UNITS_FROM + units))
+    assert all(one.noise_seed == one.unit_seed for one in others)
+    assert all(one.walk_seed == part.own.walk_seed for part in todo for one in part.others)
+    assert max(len(part.others) for part in todo) - min(len(part.others) for part in todo) <= 1
 
 
 def test_one_unit_has_one_noise_unless_asked_and_every_further_noise_is_of_one_walk(workshop):
     scenario = load_scenario(workshop / "short.toml")
-    todo = tasks(scenario.changed("seeds", units=[70, 90]), walks=3, noises=4)
-    assert [task.noise_seed for task in todo] == [task.unit_seed for task in todo] == [70, 90, 70]
-    seeds = [seed for task in todo for seed in task.noises]
-    assert [len(task.noises) for task in todo] == [4, 4, 4]
+    todo = parts(setup(scenario.changed("seeds", units=[70, 90])), walks=3, noises=4)
+    assert [part.own.noise_seed for part in todo] == [part.own.unit_seed for part in todo] == [70, 90, 70]
+    assert [[one.unit_seed for one in part.noises] for part in todo] == [[70] * 4, [90] * 4, [70] * 4]
+    seeds = [one.noise_seed for part in todo for one in part.noises]
     assert sorted(seeds) == list(range(OTHER_NOISES_FROM, OTHER_NOISES_FROM + 12))
-    assert [task.noises for task in tasks(scenario)] == [(), ()]
+    assert [part.noises for part in parts(setup(scenario))] == [(), ()]
+
+
+def test_a_rest_that_is_too_short_is_refused_before_anything_is_walked(workshop):
+    scenario = load_scenario(workshop / "short.toml").changed("sensor", calibration_s=20.0)
+    with pytest.raises(
+        InputError, match=r"calibration_s = 20: a run averages the static bias over .* = 25 s"
+    ):
+        parts(setup(scenario))
 
 
 # What is computed
@@ -92,14 +107,14 @@ def test_the_scores_are_those_of_the_tracks_against_the_walk(done):
     assert done.others[0]["pdr"] != done.others[1]["pdr"]
 
 
-def test_further_units_and_noises_are_what_their_recordings_give(done):
+def test_further_units_and_noises_are_what_their_recordings_give(workshop, done):
     """A further unit in its own noise; the walk's own unit in further noise; each in the walk's cold."""
-    task, cold = done.task, done.task.scenario.temperature_of(done.task.number)
-    spec = load_spec(task.imu)
-    pairs = [*((unit, unit) for unit in task.others), *((task.unit_seed, noise) for noise in task.noises)]
+    (part,) = short_part(workshop)
+    cold = part.own.setup.scenario.temperature_of(0)
+    further = [(one.unit_seed, one.noise_seed) for one in (*part.others, *part.noises)]
     assert len(done.noises) == 3
-    for (unit, noise), found in zip(pairs, [*done.others, *done.noises], strict=True):
-        recording = record(done.walk, draw_unit(spec, unit), seed=noise, temperature=cold)
+    for (unit, noise), found in zip(further, [*done.others, *done.noises], strict=True):
+        recording = record(done.walk, draw_unit(load_spec("nimu"), unit), seed=noise, temperature=cold)
         assert found["hdr"] == score(methods.track(recording, "hdr", start_pose(done.walk)), done.walk)
     assert len({found["pdr"].heading_error_final_deg for found in (*done.noises, done.scores)}) == 4
 
@@ -107,13 +122,14 @@ def test_further_units_and_noises_are_what_their_recordings_give(done):
 def test_each_walk_is_recorded_in_its_own_cold(workshop):
     days = (TemperatureProfile.step(20.0, 20.0), TemperatureProfile.step(20.0, -30.0))
     scenario = replace(load_scenario(workshop / "short.toml"), temperatures=days)
-    first, second = (perform(task) for task in tasks(scenario, methods=("pdr",), other_units=2, noises=1))
+    todo = parts(setup(scenario, methods=("pdr",)), other_units=2, noises=1)
+    first, second = perform_run(todo, workers=1)
     assert [done.recording.meta["temperature"]["ambient"] for done in (first, second)] == [(20.0,), (-30.0,)]
     assert np.ptp(first.recording.temperature) == 0
     assert second.recording.temperature[-1] < 19
     # The same unit in the same noise of the same walk is turned otherwise where it is warm.
-    warm = replace(second.task, scenario=replace(scenario, temperatures=days[:1]))
-    again = perform(warm)
+    warm = setup(replace(scenario, temperatures=days[:1]), methods=("pdr",))
+    (_, again) = perform_run(parts(warm, other_units=2, noises=1), workers=1)
     for name in ("scores", "others", "noises"):
         assert getattr(again, name) != getattr(second, name)
 
@@ -129,18 +145,18 @@ def test_a_run_tells_rest_shift_and_the_paths_direction(workshop):
     """Ten of 26 s of rest are averaged, the unit's bias shifts afterwards, and the path begins along x."""
     scenario = load_scenario(workshop / "short.toml")
     scenario = scenario.changed("sensor", bias_time_s=10.0, bias_shift_deg_s=0.3, imu="perfect")
-    (task, *_) = tasks(scenario, walks=1, methods=["pdr", "ihde"])
-    result = perform(task)
-    shift = scenario.unit_bias_shift(task.unit_seed)
+    made = setup(scenario, methods=["pdr", "ihde"])
+    (result,) = perform_run(parts(made, walks=1), workers=1)
+    shift = scenario.unit_bias_shift(result.trial.unit_seed)
     assert result.recording.meta["bias_shift"] == shift
     assert np.sign(result.budget.total.mean()) == np.sign(shift)
     walked = result.tracks["pdr"].t[-1] - 26
     assert result.scores["pdr"].heading_error_final_deg == pytest.approx(0.3 * walked, rel=0.3)
-    told = reckoning(scenario, result.walk, result.recording)
+    told = reckoning(made, result.walk, result.recording)
     assert (told.pdr.bias_s, told.directions.reference) == (10.0, 0.0)
     assert told.start == start_pose(result.walk, 10.0)
     assert told.guided.gyro_bias_sd == pytest.approx(math.radians(0.3))
-    sure = reckoning(scenario.changed("sensor", bias_shift_deg_s=0.0), result.walk, result.recording)
+    sure = setup(scenario.changed("sensor", bias_shift_deg_s=0.0))
     assert sure.guided.gyro_bias_sd == pytest.approx(math.radians(0.1))
     assert result.tracks["ihde"].meta["params"]["directions"]["reference"] == 0.0
 
@@ -150,38 +166,34 @@ def test_a_start_that_is_no_rest_is_refused(done):
         start_pose(done.walk, 27.0)
 
 
-def test_progress_runs_to_the_end_of_the_path_and_through_the_units(workshop):
+@pytest.mark.parametrize("workers", [1, 2])
+def test_progress_runs_to_the_end_of_the_path_and_through_the_trials(workshop, workers):
     scenario = load_scenario(workshop / "short.toml")
-    (task,) = tasks(scenario, walks=1, other_units=2, noises=1, use_cache=False)
+    todo = parts(setup(scenario), walks=1, other_units=2, noises=1)
     said = []
-    perform(task, lambda metres, unit: said.append((metres, unit)))
-    metres = [at for at, _ in said]
+
+    def report(now):
+        said.append((tuple(now.metres), now.done))
+        assert (len(now.walks), now.trials) == (1, 4)
+
+    perform_run(todo, workers=workers, use_cache=False, on_progress=report)
+    metres = [at for (at,), _ in said]
     assert metres == sorted(metres)
     assert metres[-1] == scenario.path.route.length
-    assert [unit for _, unit in said if unit] == [1, 2, 3]
-    assert sum(unit == 0 for _, unit in said) > 3
+    assert len({at for at in metres if 0 < at < metres[-1]}) > 1
+    assert [done for _, done in said] == sorted(done for _, done in said)
+    assert said[-1][1] == 4
 
 
 def test_workers_give_what_one_process_gives(workshop, done):
-    """In the order of the tasks, to the last bit."""
-    scenario = load_scenario(workshop / "short.toml")
-    todo = tasks(scenario, methods=("pdr", "hdr", "hdr-basic"))
-    calls = []
-    first, second = perform_all(todo, lambda *now: calls.append(now))
-    assert [result.task.number for result in (first, second)] == [0, 1]
+    """In order, to the last bit."""
+    made = setup(load_scenario(workshop / "short.toml"), methods=("pdr", "hdr", "hdr-basic"))
+    first, second = perform_run(parts(made, other_units=4), workers=2)
+    assert [result.trial.number for result in (first, second)] == [0, 1]
     assert first.scores == done.scores
+    assert first.others[0] == done.others[0]
     np.testing.assert_array_equal(first.recording.gyro, done.recording.gyro)
     assert second.walk.meta["subject"] == "shorter"
-    assert {index for index, _, _ in calls} <= {0, 1}
-
-
-def test_a_workers_mistake_is_the_callers(workshop, tmp_path):
-    sheet = tmp_path / "sheet.toml"
-    sheet.write_text('name = "mine"\n[gyro]\n[accel]\n')
-    todo = tasks(load_scenario(workshop / "short.toml"), imu=str(sheet))
-    sheet.unlink()
-    with pytest.raises(InputError, match=r"sheet.toml': neither a stock IMU"):
-        list(perform_all(todo))
 
 
 # What is left in the folder

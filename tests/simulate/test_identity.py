@@ -19,7 +19,7 @@ from footfall.pdr.track import read_track, write_track
 from footfall.recording import read_recording, write_recording
 from footfall.scenarios.judge.score import score
 from footfall.scenarios.path import PathSpec, build_path
-from footfall.scenarios.run import start_pose
+from footfall.scenarios.trial import start_pose
 from footfall.simulate.cache import plan_key
 from footfall.simulate.from_recording import add_errors
 from footfall.simulate.identity import mount_name, walk_identity
