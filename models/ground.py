@@ -14,23 +14,23 @@ from footfall.models import body
 from footfall.models._ground_kernels import bilinear, lay
 from footfall.models.body import Ground
 
-Look = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+GroundLookup = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 N_PLANES = 14  # numbers that pose the planes of two feet: positions (2, 3), then quaternions (2, 4), w first
 
 
-def ground_lookup(ground: Ground) -> Look:
+def ground_lookup(ground: Ground) -> GroundLookup:
     """(x, y) (n,) each -> height (n,) m and gradient (n, 2), bilinear in the grid."""
     heights = np.ascontiguousarray(ground.heights, dtype=float)
     x0, y0, cell = float(ground.x0), float(ground.y0), float(ground.cell)
 
-    def look(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def lookup(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         height, gradient = bilinear(heights, x0, y0, cell, np.ascontiguousarray(x), np.ascontiguousarray(y))
         return height, gradient
 
-    return look
+    return lookup
 
 
-def tread(planes: np.ndarray, sensor: np.ndarray, look: Look) -> None:
+def tread(planes: np.ndarray, sensor: np.ndarray, lookup: GroundLookup) -> None:
     """Lay the ground's tangent plane under every foot that carries no load; under the others it stays.
 
     Parameters
@@ -39,4 +39,4 @@ def tread(planes: np.ndarray, sensor: np.ndarray, look: Look) -> None:
     sensor : (n, n_sensor) of `models.body`
     """
     feet = sensor[:, body.SENSOR_FOOT_POSITION].reshape(-1, 3)
-    lay(planes, sensor, *look(feet[:, 0], feet[:, 1]))
+    lay(planes, sensor, *lookup(feet[:, 0], feet[:, 1]))

@@ -27,21 +27,21 @@ def _unit(quaternion):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def increments(quaternion, push):  # type: ignore[no-untyped-def]
-    """Rotation vectors between attitudes, and pushes resolved half-way.
+def increments(quaternion, gained):  # type: ignore[no-untyped-def]
+    """Rotation vectors between attitudes, and the velocity gained resolved half-way.
 
     Parameters
     ----------
     quaternion : (n + 1, 4) body to world, scalar first
-    push : (n, 3) in the world, over the interval between two attitudes
+    gained : (n, 3) m/s in the world, gravity taken off, over the interval between two attitudes
 
     Returns
     -------
-    turn (n, 3) = Log(conj(q_k) q_{k+1}), and R(q_k Exp(turn / 2))^T push (n, 3)
+    turn (n, 3) = Log(conj(q_k) q_{k+1}), and R(q_k Exp(turn / 2))^T gained (n, 3)
     """
-    turn, force = np.empty(push.shape), np.empty(push.shape)
+    turn, force = np.empty(gained.shape), np.empty(gained.shape)
     before = _unit(quaternion[0])
-    for k in range(len(push)):
+    for k in range(len(gained)):
         after = _unit(quaternion[k + 1])
         w, x, y, z = _product((before[0], -before[1], -before[2], -before[3]), after)
         if w < 0:
@@ -54,7 +54,7 @@ def increments(quaternion, push):  # type: ignore[no-untyped-def]
         half = math.cos(angle / 4), part * x, part * y, part * z
         w, x, y, z = _product(before, half)
         # Of R^T v = conj(q) v q, by v + 2 w (v x u) + 2 (v x u) x u with u the vector part.
-        a, b, c = push[k, 0], push[k, 1], push[k, 2]
+        a, b, c = gained[k, 0], gained[k, 1], gained[k, 2]
         tx, ty, tz = 2 * (b * z - c * y), 2 * (c * x - a * z), 2 * (a * y - b * x)
         force[k, 0] = a + w * tx + ty * z - tz * y
         force[k, 1] = b + w * ty + tz * x - tx * z

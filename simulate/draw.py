@@ -11,7 +11,7 @@ import threading
 import time
 import warnings
 from collections import deque
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
@@ -22,13 +22,15 @@ from footfall.models.body import Ground, build_body
 from footfall.models.route import Route
 from footfall.models.subject import Build
 from footfall.simulate.walker.walkers import CONTROL_INTERVAL, Walkers
-from footfall.simulate.walking import Outing
+
+if TYPE_CHECKING:
+    from footfall.simulate.episode import Episode
 
 # (azimuth from the walker's heading in degrees, elevation in degrees, distance in m)
 View = tuple[float, float, float]
 QUARTER_VIEW: View = (130.0, -16.0, 3.5)  # from the front, on the right, where the IMU is
 SIDE_VIEW: View = (100.0, -8.0, 3.0)
-_EYE_HEIGHT = 0.88  # m above the ground, of what the camera looks at
+_EYE_HEIGHT = 0.88  # m above the ground, of what the camera is turned to
 _LOADED_N, _FLAT_M = 200.0, 0.02  # a foot that carries so much and is so flat leaves a print
 _PRINT_SPACING = 0.25  # m between prints of one foot
 _HEEL, _BALL = -0.03, 0.115  # m before the ankle
@@ -47,7 +49,7 @@ class Stage:
     Parameters
     ----------
     walkers : the first of them is drawn; build : its body's
-    outing : that it is on, with a route to show and the ground; or None
+    episode : of it, with a route to show and the ground; or None
 
     Attributes
     ----------
@@ -55,8 +57,8 @@ class Stage:
     moves : how often the part of the ground that is drawn has moved
     """
 
-    def __init__(self, walkers: Walkers, build: Build, outing: Outing | None = None) -> None:
-        plan = None if outing is None else outing.plan
+    def __init__(self, walkers: Walkers, build: Build, episode: Episode | None = None) -> None:
+        plan = None if episode is None else episode.plan
         self.walkers, self.moves = walkers, 0
         self._ground = None if plan is None else plan.ground
         patch = None if self._ground is None else _patch(self._ground, walkers.qpos[0])
@@ -80,9 +82,9 @@ class Stage:
         self._prints: deque[tuple[str, np.ndarray, np.ndarray]] = deque(maxlen=_PRINTS)
         imu = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, "imu")
         self._instrumented = "" if imu < 0 else model.body(model.site_bodyid[imu]).name[-1]
-        self.look()
+        self.update()
 
-    def look(self) -> None:
+    def update(self) -> None:
         """Take the walker's present pose and remember its prints: once a control step."""
         if self._ground is not None:
             middle = self.model.geom("scenery").pos
@@ -120,7 +122,7 @@ class Stage:
     def restart(self) -> None:
         """Forget the prints: the walker has been put elsewhere."""
         self._prints.clear()
-        self.look()
+        self.update()
 
     def camera(self, view: View) -> mujoco.MjvCamera:
         """A camera that goes along with the walker and turns with the heading that it is told."""
@@ -258,7 +260,7 @@ def _gl_context(width: int, height: int) -> Any:
 
 
 class Window:
-    """MuJoCo's viewer on a stage, at the pace of the clock; its user may look from anywhere.
+    """MuJoCo's viewer on a stage, at the pace of the clock; its user may see it from anywhere.
 
     Parameters
     ----------
@@ -292,11 +294,11 @@ class Window:
             )
 
     def show(self) -> bool:
-        """Look at the walker and show it when its time has come; False once the window is closed."""
+        """Take the walker's pose and show it when its time has come; False once the window is closed."""
         if not self._viewer.is_running():
             return False
         with self._viewer.lock():
-            self.stage.look()
+            self.stage.update()
             self._viewer.user_scn.ngeom = 0
             self.stage.decorate(self._viewer.user_scn)
         if self._moves != self.stage.moves:

@@ -10,9 +10,9 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.models.policy import stock_policy
 from footfall.simulate.draw import QUARTER_VIEW, SIDE_VIEW, Painter, Stage, Window
+from footfall.simulate.episode import stroll
 from footfall.simulate.plan import Plan
 from footfall.simulate.walker.walkers import CONTROL_INTERVAL
-from footfall.simulate.walking import stroll
 from footfall.tables import replacing
 
 STRIP_FRAMES, STRIP_EVERY = 7, 5  # control steps
@@ -105,7 +105,7 @@ def _scenes(plan: Plan) -> Iterator[tuple[Stage, float]]:
     """The walk as it is drawn, step by step, and s since the first step (0 while it stands)."""
     stage, strode = None, 0.0
     for moment in stroll(plan, stock_policy(), stand=_STAND_S):
-        stage = stage or Stage(moment.walkers, moment.outing.plan.subject.build, moment.outing)
-        stage.look()
+        stage = stage or Stage(moment.walkers, moment.episode.plan.subject.build, moment.episode)
+        stage.update()
         strode += CONTROL_INTERVAL * bool(moment.walkers.gate.value[0] > 0)
         yield stage, strode

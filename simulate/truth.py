@@ -77,8 +77,8 @@ def imu_truth(position: np.ndarray, quaternion: np.ndarray, physics_step: float,
     earlier = (position[index - low] + position[index - high]) / 2
     velocity = (later - earlier) / interval
 
-    push = np.diff(velocity, axis=0) + np.array([0, 0, GRAVITY * interval])
-    turn, force = increments(quaternion[index], push)
+    gained = np.diff(velocity, axis=0) + np.array([0, 0, GRAVITY * interval])
+    turn, force = increments(quaternion[index], gained)
     return ImuTruth(
         index=index[1:],
         position=position[index[1:]],

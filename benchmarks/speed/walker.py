@@ -31,12 +31,13 @@ from benchmarks._common import err, options, out, run_all, shortened, write_json
 from footfall.models.policy import Policy
 from footfall.scenarios.scenario import load_scenario
 from footfall.simulate import walking as journey
+from footfall.simulate.episode import SUBSTEPS
 from footfall.simulate.plan import PHYSICS_STEP, Plan
 from footfall.simulate.walker import walkers
 from footfall.simulate.walker.steering import Pursuit
 from footfall.simulate.walker.variability import Variability
 from footfall.simulate.walker.walkers import Walkers
-from footfall.simulate.walking import SUBSTEPS, walk
+from footfall.simulate.walking import walk
 
 MINUTES, TARGET_S, TARGET_SHARE = 20, 45, 0.85
 PHYSICS = "MuJoCo"

@@ -14,9 +14,9 @@ from footfall.models.body import MOUNTS, Mount
 from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import SUBJECTS
 from footfall.scenarios.path import PathSpec, build_path
+from footfall.simulate.episode import STAND_S, stroll
 from footfall.simulate.plan import PHYSICS_STEP, Gait, Plan
 from footfall.simulate.truth import imu_truth
-from footfall.simulate.walking import STAND_S, stroll
 
 WANDER_M = 0.10  # as in the stock scenarios
 REST_S = 2.0  # of standing before the first step

@@ -30,10 +30,10 @@ from footfall.models.body import Ground
 from footfall.models.policy import stock_policy
 from footfall.models.subject import draw_subject
 from footfall.scenarios.path import PathSpec, build_path
+from footfall.simulate.episode import FallError, stroll
 from footfall.simulate.plan import Gait, Plan, Stop
 from footfall.simulate.walker._balance_kernels import GO_SPEED
 from footfall.simulate.walker.steering import StrayError
-from footfall.simulate.walking import FallError, stroll
 from footfall.streams import stream
 
 METRES, AT, PAUSE_S = 12.0, 6.0, 5.0

@@ -1,4 +1,4 @@
-"""The task of following commands of speed and turn rate without falling, and many walkers at it on threads.
+"""Following commands of speed and turn rate without falling, and many walkers on threads that do it.
 
 `gymnasium.make_vec("footfall/Walk-v0")` makes the threaded environment, which is what training uses;
 `gymnasium.make` the one of `simulate.walk_env`.
@@ -29,7 +29,7 @@ EPISODE_STEPS = 333  # 10 s
 
 @dataclass(frozen=True)
 class Difficulty:
-    """What the task may ask for. `level` 0 is straight, level walking at 1.1-1.3 m/s; 1 is everything below.
+    """What may be asked for. `level` 0 is straight, level walking at 1.1-1.3 m/s; 1 is everything below.
 
     Attributes
     ----------
@@ -88,7 +88,7 @@ def rewarded_step(walkers: Walkers, action: np.ndarray) -> tuple[dict[str, np.nd
     return reward_terms(walkers, trace, action, walkers.residual - before), trace
 
 
-class Task:
+class CommandedWalkers:
     """n walkers, random commands, rewards and falls. The environments are thin faces of it.
 
     Parameters
@@ -246,7 +246,7 @@ class WalkVectorEnv(gym.vector.VectorEnv):
         draw = np.random.default_rng(bodies)
         # People of other statures have other time scales (models.subject).
         timesteps = timestep * draw.uniform(0.94, 1.09, num_envs)
-        self.task = Task(
+        self.commanded = CommandedWalkers(
             [draw_build(draw) for _ in range(num_envs)],
             difficulty or Difficulty(),
             balance_gains(feedback_gains),
@@ -272,28 +272,28 @@ class WalkVectorEnv(gym.vector.VectorEnv):
                 "others can be had with vectorization_mode='sync' or 'async'"
             )
         if seed is not None:
-            self.task.seed(np.random.default_rng(seed))
-        self.task.reset(np.ones(self.num_envs, dtype=bool))
-        self._age = self.task.rng.integers(0, int(0.8 * self._limit), self.num_envs)
-        return self.task.walkers.observe(), {}
+            self.commanded.seed(np.random.default_rng(seed))
+        self.commanded.reset(np.ones(self.num_envs, dtype=bool))
+        self._age = self.commanded.rng.integers(0, int(0.8 * self._limit), self.num_envs)
+        return self.commanded.walkers.observe(), {}
 
     def step(
         self, actions: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Walk for 30 ms; walkers that fell or ran out of time start anew."""
-        reward, fallen, _ = self.task.step(np.asarray(actions, dtype=float))
+        reward, fallen, _ = self.commanded.step(np.asarray(actions, dtype=float))
         self._age += 1
         truncated = (self._age >= self._limit) & ~fallen
         ended = fallen | truncated
-        info: dict[str, Any] = {"terms": self.task.terms}
-        observation = self.task.walkers.observe()
+        info: dict[str, Any] = {"terms": self.commanded.terms}
+        observation = self.commanded.walkers.observe()
         if ended.any():
             info["final_obs"], info["_final_obs"] = observation, ended
-            self.task.reset(ended)
+            self.commanded.reset(ended)
             self._age[ended] = 0
-            observation = self.task.walkers.observe()
+            observation = self.commanded.walkers.observe()
         return observation, reward, fallen, truncated, info
 
     def close_extras(self, **kwargs: Any) -> None:
         """Stop the physics threads."""
-        self.task.walkers.close()
+        self.commanded.walkers.close()

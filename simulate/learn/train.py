@@ -22,7 +22,7 @@ import torch
 
 from footfall.models.policy import load_policy
 from footfall.simulate.learn.courses import CHOICE, CHOICE_SEED, JUDGEMENT, JUDGEMENT_SEED, Verdict, attempt
-from footfall.simulate.learn.env import Difficulty, Task, WalkVectorEnv, draw_build
+from footfall.simulate.learn.env import CommandedWalkers, Difficulty, WalkVectorEnv, draw_build
 from footfall.simulate.learn.ppo import HORIZON, Learner, Schedule
 from footfall.simulate.walker.feedback import GAIN_SCALE, GAIN_START
 from footfall.simulate.walker.observation import N_OBSERVATION
@@ -38,7 +38,7 @@ def tune_gains(seed: int, generations: int, threads: int) -> np.ndarray:
     """Feedback gains (32,) by CMA-ES: mean and worst reward of walking with no policy for up to 6 s."""
     n = _CANDIDATES * _REPEATS
     bodies = np.random.default_rng([seed, 1])
-    task = Task(
+    commanded = CommandedWalkers(
         [draw_build(bodies) for _ in range(n)],
         Difficulty(level=0.0),
         np.tile(GAIN_START, (n, 1)),
@@ -55,19 +55,19 @@ def tune_gains(seed: int, generations: int, threads: int) -> np.ndarray:
     idle = np.zeros((n, N_ACTION))
     for generation in range(generations):
         candidates = search.ask()
-        task.walkers.gains = np.repeat(start + scale * np.array(candidates), _REPEATS, axis=0)
-        task.seed(np.random.default_rng([seed, 2, generation]))
-        task.reset(np.ones(n, dtype=bool))
+        commanded.walkers.gains = np.repeat(start + scale * np.array(candidates), _REPEATS, axis=0)
+        commanded.seed(np.random.default_rng([seed, 2, generation]))
+        commanded.reset(np.ones(n, dtype=bool))
         alive, reward, lived = np.ones(n, dtype=bool), np.zeros(n), np.zeros(n)
         for _ in range(int(_TRIAL_S / CONTROL_INTERVAL)):
-            step_reward, fallen, _ = task.step(idle)
+            step_reward, fallen, _ = commanded.step(idle)
             reward += step_reward * alive
             lived += alive
             alive &= ~fallen
             if not alive.any():
                 break
             if fallen.any():
-                task.reset(fallen)  # keep the physics tame; `alive` no longer counts them
+                commanded.reset(fallen)  # keep the physics tame; `alive` no longer counts them
         score = reward.reshape(_CANDIDATES, _REPEATS)
         search.tell(candidates, list(-(0.7 * score.mean(1) + 0.3 * score.min(1))))
         if generation % 20 == 0:
@@ -75,7 +75,7 @@ def tune_gains(seed: int, generations: int, threads: int) -> np.ndarray:
                 f"gains: generation {generation}, mean life {lived.mean() * CONTROL_INTERVAL:.2f} s",
                 flush=True,
             )
-    task.walkers.close()
+    commanded.walkers.close()
     return start + scale * search.result.xfavorite
 
 
@@ -120,7 +120,7 @@ def train(out: Path, seed: int, samples: int, generations: int, threads: int) ->
     started, first, iteration = time.time(), done, 0
     while done < samples:
         level, bounds = schedule(done, samples)
-        env.task.difficulty = replace(env.task.difficulty, level=level)
+        env.commanded.difficulty = replace(env.commanded.difficulty, level=level)
         batch, observation = learner.collect(env, observation)
         divergence = learner.update(batch, bounds)
         done += batch["advantage"].size

@@ -13,11 +13,12 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.models.subject import SUBJECTS, Build, Subject, draw_subject
 from footfall.simulate.draw import QUARTER_VIEW, Painter, Stage, Window
+from footfall.simulate.episode import Episode
 from footfall.simulate.learn.env import (
     ACTION_SPACE,
     OBSERVATION_SPACE,
+    CommandedWalkers,
     Difficulty,
-    Task,
     balance_gains,
     rewarded_step,
 )
@@ -25,7 +26,6 @@ from footfall.simulate.learn.reward import WEIGHTS, total
 from footfall.simulate.plan import PHYSICS_STEP, Plan
 from footfall.simulate.walker.steering import StrayError
 from footfall.simulate.walker.walkers import CONTROL_INTERVAL, N_ACTION, Walkers
-from footfall.simulate.walking import Outing
 
 _STAND_S = 1.0  # before the first step along a route
 _OPTIONS = ("scenario", "subject")
@@ -205,11 +205,11 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
         if self.render_mode is None or course is None:
             return
         if self._stage is None:
-            self._stage = Stage(course.walkers, course.build, course.outing)
+            self._stage = Stage(course.walkers, course.build, course.episode)
         elif restart:
             self._stage.restart()
         if self.render_mode == "rgb_array":
-            self._stage.look()
+            self._stage.update()
             return
         if self._canvas is None:
             self._canvas = Window(self._stage)
@@ -236,13 +236,13 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
 class _Commands:
     """Random commands on ground that slopes at random (gravity is tilted)."""
 
-    arrived, strayed, progress, outing = False, False, 0.0, None
+    arrived, strayed, progress, episode = False, False, 0.0, None
 
     def __init__(self, subject: Subject | None, difficulty: Difficulty, gains: np.ndarray) -> None:
         self.subject = subject
         self.scale = 1.0 if subject is None else subject.scale
         self.build = Build() if subject is None else subject.build
-        self._task = Task(
+        self._commanded = CommandedWalkers(
             [self.build],
             difficulty,
             gains,
@@ -250,43 +250,43 @@ class _Commands:
             rng=np.random.default_rng(0),
             habits=None if subject is None else subject.habits,
         )
-        self.walkers: Walkers = self._task.walkers
+        self.walkers: Walkers = self._commanded.walkers
 
     def begin(self, rng: np.random.Generator) -> None:
         """Start an episode."""
-        self._task.seed(rng)
-        self._task.reset(np.ones(1, dtype=bool))
+        self._commanded.seed(rng)
+        self._commanded.reset(np.ones(1, dtype=bool))
 
     def step(self, action: np.ndarray) -> dict[str, np.ndarray]:
         """One control step; terms of its reward."""
-        self._task.step(action)
-        return self._task.terms
+        self._commanded.step(action)
+        return self._commanded.terms
 
 
 class _Path:
     """A plan's route on its ground."""
 
     def __init__(self, plan: Plan, gains: np.ndarray) -> None:
-        self.outing = Outing(plan, gains, stand=_STAND_S)
-        self.walkers, self.scale = self.outing.walkers, plan.subject.scale
+        self.episode = Episode(plan, gains, stand=_STAND_S)
+        self.walkers, self.scale = self.episode.walkers, plan.subject.scale
         self.build = plan.subject.build
         self.strayed = False
 
     @property
     def progress(self) -> float:
         """Along the route (m)."""
-        return self.outing.progress
+        return self.episode.progress
 
     @property
     def arrived(self) -> bool:
         """Has walked the route and stood at its end."""
-        return self.outing.finished
+        return self.episode.finished
 
     def step(self, action: np.ndarray) -> dict[str, np.ndarray]:
         """One control step; terms of its reward."""
         terms, _ = rewarded_step(self.walkers, action)
         try:
-            self.outing.steer()
+            self.episode.steer()
         except StrayError:
             self.strayed = True
         return terms

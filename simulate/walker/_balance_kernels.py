@@ -19,7 +19,7 @@ from numba.extending import register_jitable
 from footfall.models.body import HIP_HEIGHT, JOINTS, N_SERVOS, SENSOR_FOOT_POSITION
 from footfall.models.gait import INDEX, mask
 from footfall.simulate.walker._elementwise import choose, clip, turned
-from footfall.simulate.walker._look_kernels import over_ground
+from footfall.simulate.walker._posture_kernels import over_ground
 from footfall.simulate.walker._start_kernels import loads, set_out, shifted
 from footfall.simulate.walker.feedback import SERVO_MIRROR, SERVO_SIGN
 from footfall.simulate.walker.state import ACTION_SCALE, CREEP
@@ -72,7 +72,7 @@ _FOOT_R, _FOOT_L = SENSOR_FOOT_POSITION.start, SENSOR_FOOT_POSITION.start + 3
 
 
 class Balance(NamedTuple):
-    """What the feedback looks at, in the heading frame and mirrored to right stance.
+    """What the feedback goes by, in the heading frame and mirrored to right stance.
 
     pitch (nose down positive) and roll are relative to gravity, yaw_error to the commanded heading;
     `foot_y` is the pelvis relative to the stance foot (m); places and velocities are along the ground.

@@ -34,7 +34,7 @@ def pushes(
 
 
 class Pusher:
-    """Who gives the pushes, control step by control step.
+    """Gives the pushes, control step by control step.
 
     Parameters
     ----------

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from footfall.simulate.walker._look_kernels import LIMIT as LIMIT
-from footfall.simulate.walker._look_kernels import observe_all
+from footfall.simulate.walker._posture_kernels import LIMIT as LIMIT
+from footfall.simulate.walker._posture_kernels import observe_all
 from footfall.simulate.walker.feedback import JOINT_MIRROR, JOINT_SIGN, SERVO_MIRROR, SERVO_SIGN
 
 _JOINTS, _JOINT_SIGNS = JOINT_MIRROR.tolist(), JOINT_SIGN.tolist()

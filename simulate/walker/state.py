@@ -1,6 +1,6 @@
 """The state of n walkers as one table of records, which the compiled control step reads and writes.
 
-A law of the control step (`_balance_kernels`, `_gait_kernels`, `_look_kernels`) is written once, in terms of
+The laws of the control step (`_balance_kernels`, `_gait_kernels`, `_posture_kernels`) are written once, for
 one walker `s`. Compiled, `s` is a record and every quantity a number; in plain numpy, `s` is `Columns` and
 every quantity an array over the walkers: the twin that the tests compare the compiled code with.
 """
@@ -67,7 +67,7 @@ WALKER = np.dtype(
         ("setting_out", bool),  # from the wish to walk in a stand until the first step has landed
         ("left_first", bool),  # the left foot stands through the first step
         ("shift", float),  # s, for which the weight has been shifting
-        # what observation, feedback and reward share: `look`
+        # what observation, feedback and reward share: `posture`
         ("rotation", float, (3, 3)),  # body to world
         ("yaw", float),
         ("cos", float),

@@ -12,7 +12,7 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.models.route import Route
 from footfall.simulate.plan import Pace, Stop
-from footfall.simulate.walker._look_kernels import SLOWING_SHARE, SPEED_SLEW
+from footfall.simulate.walker._posture_kernels import SLOWING_SHARE, SPEED_SLEW
 from footfall.simulate.walker._steer_kernels import pursue
 
 TURN_LIMIT = 1.0  # rad/s

@@ -3,7 +3,7 @@
 The reference gait (models.gait) plus balance feedback plus a learned residual sets the targets of the joint
 servos, which are interpolated over the physics steps. No other input acts on a body. Everything is in the
 units of the 1.75 m body (models.subject). The laws are compiled: `_balance_kernels`, `_gait_kernels` and
-`_look_kernels`.
+`_posture_kernels`.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from mujoco import rollout
 
 from footfall.conventions import GRAVITY
 from footfall.models import body, gait
-from footfall.models.ground import N_PLANES, Look, tread
+from footfall.models.ground import N_PLANES, GroundLookup, tread
 from footfall.models.subject import Habits
 from footfall.simulate.walker._balance_kernels import act_all
 from footfall.simulate.walker._gait_kernels import FROZEN, REFERENCE, reference_all, stride_all, targets_all
-from footfall.simulate.walker._look_kernels import land_all, look_all
+from footfall.simulate.walker._posture_kernels import land_all, posture_all
 from footfall.simulate.walker.feedback import gain_records
 from footfall.simulate.walker.heights import gait_heights, standing_height
 from footfall.simulate.walker.observation import observe
@@ -31,7 +31,7 @@ from footfall.simulate.walker.variability import Variability
 
 CONTROL_INTERVAL = 0.030  # s, nominal: the physics step times `substeps`
 N_ACTION = body.N_SERVOS
-# What drives the physics, in MuJoCo's order: servo targets; the forces on the bodies while there is a push;
+# What drives the physics, in MuJoCo's order: servo targets; the forces on the bodies while there are some;
 # where the ground slopes, the planes that the feet tread on.
 _CONTROL, _FORCE = int(mujoco.mjtState.mjSTATE_CTRL), int(mujoco.mjtState.mjSTATE_XFRC_APPLIED)
 _PLANES = int(mujoco.mjtState.mjSTATE_MOCAP_POS | mujoco.mjtState.mjSTATE_MOCAP_QUAT)
@@ -79,7 +79,7 @@ class Walkers:
         gains: np.ndarray,
         *,
         rng: np.random.Generator,
-        ground: Look | None = None,
+        ground: GroundLookup | None = None,
         threads: int = 0,
         substeps: int | None = None,
     ) -> None:
@@ -125,7 +125,7 @@ class Walkers:
         self._start = np.empty((n, 1 + self.qpos.shape[1] + self.qvel.shape[1]))
         self._planes = np.zeros((n, N_PLANES))
         self._find_ground(self.qpos, self.sensor)
-        look_all(state)
+        posture_all(state)
 
     def close(self) -> None:
         """Stop the physics threads."""
@@ -207,7 +207,7 @@ class Walkers:
         self.setting_out[mask], self._state["shift"][mask] = False, 0
         self.fresh[mask] = True
         self._find_ground(self.qpos, self.sensor)
-        look_all(self._state)
+        posture_all(self._state)
 
     @property
     def gains(self) -> np.ndarray:
@@ -243,13 +243,13 @@ class Walkers:
         """(n, N_OBSERVATION) float32, mirrored to right stance."""
         return observe(self._state)
 
-    def step(self, action: np.ndarray, push: np.ndarray | None = None) -> Trace:
+    def step(self, action: np.ndarray, force: np.ndarray | None = None) -> Trace:
         """Advance every walker by its control interval `dt`.
 
         Parameters
         ----------
         action : (n, 17) in [-1, 1], mirrored as the observation was
-        push : (n, 3) N, a force on the trunk during this interval; None, as nearly always: no external force
+        force : (n, 3) N on the trunk during this interval; None, as nearly always: no external force
 
         Raises
         ------
@@ -268,10 +268,10 @@ class Walkers:
         targets_all(state, REFERENCE, start, target)
         after, sensor = np.empty((n, k, start.shape[1])), np.empty((n, k, self._n_sensor))
         control, spec = [target], _CONTROL
-        if push is not None:
-            force = np.zeros((n, k, self.models[0].nbody, 6))
-            force[:, :, self._trunk, :3] = push[:, None]
-            control.append(force.reshape(n, k, -1))
+        if force is not None:
+            on_bodies = np.zeros((n, k, self.models[0].nbody, 6))
+            on_bodies[:, :, self._trunk, :3] = force[:, None]
+            control.append(on_bodies.reshape(n, k, -1))
             spec |= _FORCE
         if self.ground is not None:
             control.append(np.repeat(self._planes[:, None], k, axis=1))

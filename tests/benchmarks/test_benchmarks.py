@@ -24,9 +24,9 @@ from footfall.scenarios.judge.score import compare, score
 from footfall.scenarios.scenario import load_scenario
 from footfall.scenarios.trial import start_pose
 from footfall.simulate.cache import cached_walk
+from footfall.simulate.episode import FallError
 from footfall.simulate.record import record
 from footfall.simulate.walk import TrueFootfalls
-from footfall.simulate.walking import FallError
 from tests.helpers.places import ROOT
 
 COLD = TemperatureProfile.step(20.0, -5.0)

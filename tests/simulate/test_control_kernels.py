@@ -16,7 +16,7 @@ from footfall.models.subject import Build, Habits
 from footfall.simulate.walker import (
     _balance_kernels,
     _gait_kernels,
-    _look_kernels,
+    _posture_kernels,
     _variability_kernels,
     variability,
     walkers,
@@ -62,21 +62,21 @@ def plain_reference(state: np.ndarray, ref: np.ndarray, stagger: float) -> np.nd
     return out
 
 
-def plain_look(state: np.ndarray) -> None:
-    _look_kernels.look(Columns(state))
+def plain_posture(state: np.ndarray) -> None:
+    _posture_kernels.posture(Columns(state))
 
 
 def plain_land(state: np.ndarray, after: np.ndarray, sensor: np.ndarray) -> None:
     nq, n_sensor = state["qpos"].shape[1], state["sensor"].shape[1]
     state["qpos"], state["qvel"] = after[:, -1, 1 : 1 + nq], after[:, -1, 1 + nq :]
     state["sensor"] = sensor[:, -1, :n_sensor]
-    _look_kernels.settle(Columns(state))
-    plain_look(state)
+    _posture_kernels.settle(Columns(state))
+    plain_posture(state)
 
 
 def plain_observe(state: np.ndarray) -> np.ndarray:
     own, seen = np.empty((2, N_OBSERVATION, len(state)))
-    _look_kernels.observe(Columns(state), MIRROR, SIGN, own, seen)
+    _posture_kernels.observe(Columns(state), MIRROR, SIGN, own, seen)
     return seen.T.astype(np.float32)
 
 
@@ -95,7 +95,7 @@ def random_state(rng: np.random.Generator, n: int) -> np.ndarray:
     state["speed"], state["speed_goal"] = rng.choice([0, 0.1, 0.5, 1.3], (2, n))
     state["phase"] = rng.choice([0.05, 0.06, 0.48, 0.56, 0.98], n) + rng.uniform(0, 0.01, n)
     state["gate"] = rng.choice([0.0, 0.1, 0.7, 1.0], n)
-    plain_look(state)
+    plain_posture(state)
     return state
 
 
@@ -107,7 +107,7 @@ def assert_same(one: np.ndarray, other: np.ndarray, tolerance: float = 1e-12) ->
 @settings(max_examples=40, deadline=None)
 @given(SEEDS)
 def test_a_control_step_is_its_twin(seed: int) -> None:
-    """Decisions, residual, targets, commands, look and observation of any bodies."""
+    """Decisions, residual, targets, commands, posture and observation of any bodies."""
     rng, n = np.random.default_rng(seed), 6
     compiled = random_state(rng, n)
     plain = compiled.copy()
@@ -134,7 +134,7 @@ def test_a_control_step_is_its_twin(seed: int) -> None:
     reference = _gait_kernels.reference_all(compiled, REFERENCE, 0.3)
     np.testing.assert_allclose(reference, plain_reference(plain, REFERENCE, 0.3), rtol=0, atol=1e-12)
     after, sensor = start[:, None] + rng.normal(0, 0.1, (n, 2, 1)), rng.uniform(0, 500, (n, 2, 31))
-    _look_kernels.land_all(compiled, after, sensor)
+    _posture_kernels.land_all(compiled, after, sensor)
     plain_land(plain, after, sensor)
     assert_same(compiled, plain)
 
@@ -150,12 +150,12 @@ def test_a_body_that_is_not_finite_harms_no_other(seed: int, broken: float) -> N
         one = state.copy()
         for name in ("qpos", "qvel", "sensor"):
             one[name][0] = value
-        _look_kernels.look_all(one)
+        _posture_kernels.posture_all(one)
         _balance_kernels.act_all(one, gains, action)
         _gait_kernels.stride_all(one, np.empty(3, int))
         start, targets = np.empty((3, 52)), np.empty((3, 4, N_ACTION))
         _gait_kernels.targets_all(one, REFERENCE, start, targets)
-        _look_kernels.land_all(one, start[:, None], one["sensor"][:, None].copy())
+        _posture_kernels.land_all(one, start[:, None], one["sensor"][:, None].copy())
         results.append((observe(one)[1:], targets[1:], one[1:]))
     for with_it, without in zip(*results, strict=True):
         np.testing.assert_array_equal(with_it, without)
@@ -203,7 +203,7 @@ def test_walks_are_those_of_the_twin(monkeypatch: pytest.MonkeyPatch) -> None:
         ("act_all", plain_act),
         ("stride_all", plain_stride),
         ("targets_all", plain_targets),
-        ("look_all", plain_look),
+        ("posture_all", plain_posture),
         ("land_all", plain_land),
         ("observe", plain_observe),
     ):
@@ -244,12 +244,12 @@ def test_the_ground_is_bilinear(seed: int) -> None:
     (x0, y0), cell = rng.normal(size=2), 0.5
     grid_x, grid_y = x0 + cell * np.arange(8), y0 + cell * np.arange(6)
     heights = a + b * grid_x + c * grid_y[:, None] + d * grid_x * grid_y[:, None]
-    look = ground_lookup(Ground(x0, y0, cell, heights))
+    lookup = ground_lookup(Ground(x0, y0, cell, heights))
     x, y = rng.uniform(x0, grid_x[-2], 20), rng.uniform(y0, grid_y[-2], 20)
-    height, gradient = look(x, y)
+    height, gradient = lookup(x, y)
     np.testing.assert_allclose(height, a + b * x + c * y + d * x * y, atol=1e-12)
     np.testing.assert_allclose(gradient, np.column_stack([b + d * y, c + d * x]), atol=1e-12)
-    lost, _ = look(np.array([-1e9, np.nan, 1e300]), np.array([0.0, np.inf, 1e300]))
+    lost, _ = lookup(np.array([-1e9, np.nan, 1e300]), np.array([0.0, np.inf, 1e300]))
     assert np.isfinite(lost).all()
 
 
@@ -260,14 +260,14 @@ def test_a_foot_in_the_air_gets_the_tangent_plane_and_a_loaded_one_keeps_its_own
     rng, n = np.random.default_rng(seed), 5
     a, b, c = rng.normal(0, 0.3, 3)
 
-    def look(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def lookup(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return a * x + b * y + c * x * y, np.column_stack([a + c * y, b + c * x])
 
     sensor, before = rng.normal(size=(n, 30)), rng.normal(size=(n, N_PLANES))
     load = np.where(rng.random((n, 6)) < 0.2, rng.uniform(1, 900, (n, 6)), 0.0)
     sensor[:, SENSOR_TOUCH] = load
     planes = before.copy()
-    tread(planes, sensor, look)
+    tread(planes, sensor, lookup)
     for foot in range(2):
         place, turn = slice(3 * foot, 3 * foot + 3), slice(6 + 4 * foot, 10 + 4 * foot)
         for i in range(n):

@@ -50,7 +50,7 @@ def test_the_force_adds_up_to_the_impulse() -> None:
 def test_a_push_gives_the_body_its_impulse_and_leaves_nothing_behind() -> None:
     """Above the ground the momentum changes by force times time, and then no more."""
     walkers, still = airborne(), airborne()
-    idle, push = np.zeros((1, N_ACTION)), np.array([[111.0, -60.0, 0.0]])
+    idle, force = np.zeros((1, N_ACTION)), np.array([[111.0, -60.0, 0.0]])
     mass = float(sum(walkers.models[0].body_mass))
 
     def momentum(w: Walkers) -> np.ndarray:
@@ -63,9 +63,9 @@ def test_a_push_gives_the_body_its_impulse_and_leaves_nothing_behind() -> None:
         return mass * np.array(data.subtree_linvel[1])
 
     for k in range(5):
-        walkers.step(idle, push if k == 1 else None)
+        walkers.step(idle, force if k == 1 else None)
         still.step(idle)
-    np.testing.assert_allclose(momentum(walkers) - momentum(still), push[0] * 0.03, atol=0.02)
+    np.testing.assert_allclose(momentum(walkers) - momentum(still), force[0] * 0.03, atol=0.02)
     walkers.close()
     still.close()
 

@@ -16,9 +16,9 @@ from footfall.errors import InputError
 from footfall.models.body import Ground
 from footfall.models.policy import stock_policy
 from footfall.simulate.draw import SIDE_VIEW, Stage, has_screen
+from footfall.simulate.episode import Episode
 from footfall.simulate.plan import Plan
 from footfall.simulate.walker.walkers import N_ACTION
-from footfall.simulate.walking import Outing
 from tests.helpers.commands import expect_one_sentence
 
 STILL = np.zeros(N_ACTION, dtype=np.float32)
@@ -118,15 +118,15 @@ def ground_marks(stage: Stage) -> dict[str, np.ndarray]:
 
 
 def test_feet_that_stand_leave_prints_under_them_on_the_path(short_plan: Plan) -> None:
-    outing = Outing(short_plan, stock_policy().feedback_gains, stand=5.0)
-    route = outing.plan.route
+    episode = Episode(short_plan, stock_policy().feedback_gains, stand=5.0)
+    route = episode.plan.route
     line = np.column_stack([route.x, route.y])
-    stage = Stage(outing.walkers, outing.plan.subject.build, outing)
+    stage = Stage(episode.walkers, episode.plan.subject.build, episode)
     assert len(ground_marks(stage)["print"]) == 0  # it has not touched the ground yet
     for _ in range(30):
-        outing.walkers.step(STILL[None])
-        outing.steer()
-        stage.look()
+        episode.walkers.step(STILL[None])
+        episode.steer()
+        stage.update()
     marks = ground_marks(stage)
     assert marks["print"].shape == (4, 3)  # two feet, heel and ball; still feet leave no more
     assert np.abs(marks["print"][:, 2]).max() < 0.02
@@ -136,7 +136,7 @@ def test_feet_that_stand_leave_prints_under_them_on_the_path(short_plan: Plan) -
     assert max(off) < 0.1
     stage.restart()
     assert len(ground_marks(stage)["print"]) in (0, 4)
-    outing.walkers.close()
+    episode.walkers.close()
 
 
 def test_on_slopes_their_ground_alone_is_seen(short_plan: Plan) -> None:
@@ -147,8 +147,8 @@ def test_on_slopes_their_ground_alone_is_seen(short_plan: Plan) -> None:
         (short_plan, mujoco.mjtGeom.mjGEOM_PLANE),
         (downhill, mujoco.mjtGeom.mjGEOM_HFIELD),
     ):
-        outing = Outing(plan, stock_policy().feedback_gains, stand=1.0)
-        stage = Stage(outing.walkers, outing.plan.subject.build, outing)
+        episode = Episode(plan, stock_policy().feedback_gains, stand=1.0)
+        stage = Stage(episode.walkers, episode.plan.subject.build, episode)
         scene = mujoco.MjvScene(stage.model, 1000)
         everything, option = mujoco.mjtCatBit.mjCAT_ALL.value, mujoco.MjvOption()
         camera = stage.camera(SIDE_VIEW)
@@ -156,7 +156,7 @@ def test_on_slopes_their_ground_alone_is_seen(short_plan: Plan) -> None:
         seen = {geom.type for geom in scene.geoms[: scene.ngeom]}
         grounds = {mujoco.mjtGeom.mjGEOM_PLANE.value, mujoco.mjtGeom.mjGEOM_HFIELD.value}
         assert seen & grounds == {expected.value}
-        outing.walkers.close()
+        episode.walkers.close()
 
 
 # Viewers

@@ -15,12 +15,12 @@ from footfall.conventions import GRAVITY
 from footfall.models.body import JOINTS, N_SERVOS, SENSOR_TOUCH, SERVO_JOINT, SERVOS, build_body
 from footfall.models.policy import stock_policy
 from footfall.models.subject import Build, Subject, draw_subject
+from footfall.simulate.episode import stroll
 from footfall.simulate.plan import Plan
 from footfall.simulate.walker._gait_kernels import REFERENCE
 from footfall.simulate.walker._start_kernels import hold_feet, set_out
 from footfall.simulate.walker.state import WALKER, Columns
 from footfall.simulate.walker.walkers import Walkers
-from footfall.simulate.walking import stroll
 
 STEP = 0.0025  # s of physics
 LEVEL = (0.0, 0.0)

@@ -169,10 +169,10 @@ def test_the_increments_are_their_twin(seed: int, turning: float) -> None:
         attitude.append(attitude[-1] * step)
     quaternion = np.array([one.as_quat(scalar_first=True) for one in attitude])
     quaternion *= rng.choice([-1.0, 1.0], (n + 1, 1))  # both signs say the same attitude
-    push = rng.normal(size=(n, 3))
-    turn, force = increments(quaternion, push)
+    gained = rng.normal(size=(n, 3))
+    turn, force = increments(quaternion, gained)
     attitudes = Rotation.from_quat(quaternion, scalar_first=True)
     expected = (attitudes[:-1].inv() * attitudes[1:]).as_rotvec()
     middle = attitudes[:-1] * Rotation.from_rotvec(expected / 2)
     np.testing.assert_allclose(turn, expected, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(force, middle.inv().apply(push), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(force, middle.inv().apply(gained), rtol=0, atol=1e-12)

@@ -22,13 +22,13 @@ from footfall.models.body import (
     SENSOR_TOUCH,
     build_body,
 )
-from footfall.models.ground import Look
+from footfall.models.ground import GroundLookup
 from footfall.models.policy import load_policy, stock_policy
 from footfall.models.subject import Build, Habits
 from footfall.simulate.learn.env import balance_gains
 from footfall.simulate.walker._balance_kernels import Balance, balance_of, feedback
 from footfall.simulate.walker._gait_kernels import targets_all
-from footfall.simulate.walker._look_kernels import land_all, look_all
+from footfall.simulate.walker._posture_kernels import land_all, posture_all
 from footfall.simulate.walker.feedback import (
     GAIN_SHAPE,
     GAIN_START,
@@ -189,7 +189,7 @@ def test_standing_stands(grade: float) -> None:
     assert np.degrees(np.abs(trace.sensor[:, :, SENSOR_FOOT_RATE])).max() < 1.0
 
 
-def slope(grade: tuple[float, float]) -> Look:
+def slope(grade: tuple[float, float]) -> GroundLookup:
     return lambda x, y: (grade[0] * x + grade[1] * y, np.tile(grade, (len(x), 1)))
 
 
@@ -213,7 +213,7 @@ def put_on_slope(sloping: Walkers, tilted: Walkers, turn: Rotation) -> None:
     feet = turn.apply(tilted.sensor[0, SENSOR_FOOT_POSITION].reshape(2, 3))
     sloping.sensor[0, SENSOR_FOOT_POSITION] = feet.ravel()
     sloping._find_ground(sloping.qpos, sloping.sensor)
-    look_all(sloping._state)
+    posture_all(sloping._state)
 
 
 @pytest.mark.parametrize("grade", [(0.08, 0.0), (0.0, 0.08), (0.05, -0.06)])

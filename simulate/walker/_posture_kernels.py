@@ -1,4 +1,4 @@
-"""Compiled: what the body looks like after the physics, how commands slew, and what the policy sees.
+"""Compiled: how the body stands after the physics, how commands slew, and what the policy sees.
 
 Laws in terms of one walker `s` (see state.py); the faces are walkers.py and observation.py.
 """
@@ -27,7 +27,7 @@ _TOUCH, _N_TOUCH = body.SENSOR_TOUCH.start, 6
 
 
 @register_jitable
-def look(s):  # type: ignore[no-untyped-def]
+def posture(s):  # type: ignore[no-untyped-def]
     """Derive what observation, feedback and reward share."""
     w, x, y, z = s.qpos[3], s.qpos[4], s.qpos[5], s.qpos[6]
     norm = np.maximum(np.sqrt(w * w + x * x + y * y + z * z), 1e-9)
@@ -45,7 +45,7 @@ def look(s):  # type: ignore[no-untyped-def]
     s.yaw_error = (s.yaw - s.heading + np.pi) % (2 * np.pi) - np.pi
     s.height = s.qpos[2] - s.ground
     s.grade_forward, s.grade_left = turned(s, s.gradient[0], s.gradient[1])
-    # Training tilts gravity over level ground, walks tilt the ground: both must look the same to the laws.
+    # Training tilts gravity over level ground, walks tilt the ground: both must be the same to the laws.
     s.tilt_forward, s.tilt_left = turned(s, s.gradient[0] - s.up[0], s.gradient[1] - s.up[1])
     s.left_stance = np.floor(s.phase * 2) % 2 == 1
     finite = np.isfinite(s.height)
@@ -140,15 +140,15 @@ def observe(s, mirror, sign, own, seen):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def look_all(state):  # type: ignore[no-untyped-def]
-    """`look` of every walker."""
+def posture_all(state):  # type: ignore[no-untyped-def]
+    """`posture` of every walker."""
     for i in range(len(state)):
-        look(state[i])
+        posture(state[i])
 
 
 @njit(cache=True, nogil=True)
 def land_all(state, after, sensor):  # type: ignore[no-untyped-def]
-    """Take over the last of the physics states (n, k, 1 + nq + nv) and sensors; `settle` and `look`."""
+    """Take over the last of the physics states (n, k, 1 + nq + nv) and sensors; `settle` and `posture`."""
     for i in range(len(state)):
         s = state[i]
         for j in range(_N_QPOS):
@@ -158,7 +158,7 @@ def land_all(state, after, sensor):  # type: ignore[no-untyped-def]
         for j in range(len(s.sensor)):
             s.sensor[j] = sensor[i, -1, j]
         settle(s)
-        look(s)
+        posture(s)
 
 
 @njit(cache=True, nogil=True)

@@ -13,10 +13,11 @@ from footfall.models.route import Route
 from footfall.models.subject import SUBJECTS, Subject
 from footfall.pdr.strapdown import integrate
 from footfall.simulate.cache import cached_walk, plan_key
+from footfall.simulate.episode import STAND_S, Episode, FallError
 from footfall.simulate.plan import Disturbance, Gait, Pace, Plan, Stop
 from footfall.simulate.truth import runs
 from footfall.simulate.walk import Walk, footfalls_path, read_walk, write_walk
-from footfall.simulate.walking import STAND_S, FallError, Outing, walk
+from footfall.simulate.walking import walk
 
 
 def test_it_goes_where_the_route_goes(short_plan: Plan, short_walk: Walk) -> None:
@@ -83,9 +84,9 @@ def test_the_parts_of_variability_are_each_times_the_whole(short_plan: Plan) -> 
     """Placement, cadence and toe-out, in this order."""
     gait = Gait(variability=0.5, placement_variability=0.2, toe_out_variability=1.6)
     plan = replace(short_plan, gait=gait)
-    level = Outing(plan, stock_policy().feedback_gains, stand=1.0).walkers.variability.level
+    level = Episode(plan, stock_policy().feedback_gains, stand=1.0).walkers.variability.level
     np.testing.assert_allclose(level, [[0.1, 0.5, 0.8]])
-    level = Outing(
+    level = Episode(
         replace(plan, gait=replace(gait, cadence_variability=0.0)), stock_policy().feedback_gains, stand=1.0
     )
     np.testing.assert_allclose(level.walkers.variability.level, [[0.1, 0.0, 0.8]])
