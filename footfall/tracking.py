@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from footfall.errors import InputError
 from footfall.formats.condition import Findings
-from footfall.formats.reader import WHOLE_ROWS, Blocks, open_source, read
+from footfall.formats.reader import WHOLE_ROWS, Blocks, open_source, read_source
 from footfall.hdr.methods import METHODS, require_methods, told_directions
 from footfall.hdr.streamed import StreamedReckoning
 from footfall.hdr.tracks import Reckoning, told
@@ -29,7 +29,7 @@ class Tracked(NamedTuple):
     bias_s: float
 
 
-def track_file(
+def track(
     path: str | os.PathLike[str],
     method: str,
     *,
@@ -78,16 +78,16 @@ def track_file(
 
     try:
         if source.rows <= WHOLE_ROWS:
-            recording, findings = read(path, format, sizes=sizes, rate_hz=rate_hz)
+            recording, findings = read_source(source)
             if rest is not None:
                 used = rest(recording, used)
             params = replace(params, bias_s=used)
-            track = METHODS[method].track(Reckoning(recording, start, params, counted))
+            found = METHODS[method].track(Reckoning(recording, start, params, counted))
         else:
-            blocks = Blocks(path, source)
-            track = METHODS[method].track(StreamedReckoning(run_through, start, counted))
+            blocks = Blocks(source)
+            found = METHODS[method].track(StreamedReckoning(run_through, start, counted))
             findings = blocks.findings
     except InputError as error:
-        raise error.about(path, "recording") from None
+        raise error.about(source.path, "recording") from None
     origin = {**source.meta, "read": findings.as_dict()}
-    return Tracked(told(track, origin, replace(params, bias_s=used), start), findings, used)
+    return Tracked(told(found, origin, replace(params, bias_s=used), start), findings, used)

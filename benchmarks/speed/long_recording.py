@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from footfall.recording import ACCEL, GYRO
-from footfall.tracking import track_file
+from footfall.tracking import track
 from tests.helpers.synthetic_foot import walk
 
 RATE, PERIOD = 200, 220  # Hz, samples a stride
@@ -66,7 +66,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         path = Path(folder) / "long.csv"
         rows, strides = write(path, 1e9 * chosen.gigabytes)
         begin = time.perf_counter()
-        result = track_file(path, chosen.method)
+        result = track(path, chosen.method)
         seconds = time.perf_counter() - begin
     most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
     print(f"{rows} rows, {strides} strides in the middle of the walk, {len(result.track)} footfalls")

@@ -70,14 +70,14 @@ def track(
     from footfall.formats import parse_units
     from footfall.pdr.reckoning import PdrParams
     from footfall.pdr.track import write_track
-    from footfall.tracking import track_file
+    from footfall.tracking import track as navigate
 
     require_output(output, ".parquet", recording)
     if bias_time is not None:
         with blaming("--bias-time", "pdr"):
             PdrParams(bias_s=bias_time)
     with ERR.status("navigating"):
-        result = track_file(
+        result = navigate(
             recording,
             method,
             format=format,

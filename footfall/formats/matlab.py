@@ -55,4 +55,4 @@ def open_matlab(path: Path, sizes: Mapping[str, float]) -> Source:
         gyro=imu[:, 3:].astype(float) * sizes.get("gyro", 1.0),
         accel=imu[:, :3].astype(float) * sizes.get("accel", 1.0),
     )
-    return Source("matlab", len(imu), iter([samples]))
+    return Source(path, "matlab", len(imu), iter([samples]))

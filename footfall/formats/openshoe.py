@@ -29,7 +29,7 @@ def open_openshoe(path: Path) -> Source:
     of its timer is the time.
     """
     notes: list[str] = []
-    return Source("openshoe", path.stat().st_size // 230, _blocks(path, notes), notes=notes)
+    return Source(path, "openshoe", path.stat().st_size // 230, _blocks(path, notes), notes=notes)
 
 
 def _blocks(path: Path, notes: list[str]) -> Iterator[Samples]:

@@ -88,16 +88,26 @@ def read(
         What `open_source`, `condition` and the checks of `footfall.formats.physics` refuse; or a walk of more
         than `WHOLE_ROWS` rows.
     """
-    source = open_source(path, format, sizes, rate_hz)
+    return read_source(open_source(path, format, sizes, rate_hz), walk=walk)
+
+
+def read_source(source: Source, *, walk: bool = True) -> tuple[Recording, Findings]:
+    """`read` of a file that is open: its samples are read now, and once.
+
+    Raises
+    ------
+    InputError
+        As `read`.
+    """
     if walk and source.rows > WHOLE_ROWS:
-        raise InputError(f"{source.rows} rows, expected at most {WHOLE_ROWS} to hold at once", path)
+        raise InputError(f"{source.rows} rows, expected at most {WHOLE_ROWS} to hold at once", source.path)
     try:
         samples, findings = condition(joined(source.blocks), source.format)
         findings = replace(findings, notes=tuple(source.notes))
         recording = as_recording(samples, source, findings)
         judge(recording, findings, walk)
     except InputError as error:
-        raise error.about(path, "recording") from None
+        raise error.about(source.path, "recording") from None
     return recording, findings
 
 
@@ -109,8 +119,7 @@ class Blocks:
 
     Parameters
     ----------
-    path : for messages
-    source : opened
+    source : opened; it is run through once
 
     Raises
     ------
@@ -118,8 +127,8 @@ class Blocks:
         While it is run through, as `read`.
     """
 
-    def __init__(self, path: str | os.PathLike[str], source: Source) -> None:
-        self.path, self.source = path, source
+    def __init__(self, source: Source) -> None:
+        self.source = source
         self._found: Findings | None = None
 
     @property
@@ -153,7 +162,7 @@ class Blocks:
                 raise InputError("no rows of samples", "recording")
             yield _bare(seam, begin)
         except InputError as error:
-            raise error.about(self.path, "recording") from None
+            raise error.about(self.source.path, "recording") from None
 
 
 def _bare(samples: Samples, begin: float) -> Recording:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -47,6 +48,7 @@ class Source:
 
     Attributes
     ----------
+    path : for messages
     format : its name
     rows : how many it has, about
     blocks : its samples, in order; may be run through once
@@ -54,6 +56,7 @@ class Source:
     notes : filled while the blocks are run through: what was wrong with the file itself
     """
 
+    path: Path
     format: str
     rows: int
     blocks: Iterator[Samples]

@@ -57,7 +57,7 @@ def open_table(
     wanted = [*layout.columns.values(), *layout.valid]
     notes: list[str] = []
     batches = _parquet(path, file, wanted) if parquet else _csv(path, delimiter, names, wanted, notes)
-    return Source(layout.format, rows, _samples(batches, layout, sizes, rate_hz), meta, notes)
+    return Source(path, layout.format, rows, _samples(batches, layout, sizes, rate_hz), meta, notes)
 
 
 def _layout(path: Path, names: Sequence[str], name: str) -> Layout:

@@ -10,15 +10,17 @@ import pyarrow.csv as pa_csv
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.io import savemat
 
 from footfall.errors import InputError
+from footfall.formats import open_source
 from footfall.pdr import stream
 from footfall.pdr.detectors import DETECTORS
 from footfall.pdr.reckoning import PdrParams, StartPose, dead_reckon
 from footfall.pdr.rest import still_time
 from footfall.pdr.stream import dead_reckon_blocks
 from footfall.recording import ACCEL, GYRO, Recording, write_recording
-from footfall.tracking import track_file
+from footfall.tracking import track
 from tests.helpers.synthetic_foot import walk
 
 HEADINGS = np.cumsum(np.random.default_rng(0).normal(0, 0.1, 40))
@@ -116,14 +118,14 @@ def test_a_file_in_blocks_makes_the_track_of_the_whole_file(tmp_path_factory, wa
     write_recording(walked, file)
     write_rows(file, walked, rows)
     ways = (("hdr", {}), ("hde-2010", {"directions": 8, "reference": 0.4}))
-    wholes = [track_file(file, method, start=START, **told) for method, told in ways]
+    wholes = [track(file, method, start=START, **told) for method, told in ways]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("footfall.tracking.WHOLE_ROWS", 1000)
         patch.setattr("footfall.formats.table.BLOCK_ROWS", 2048)
         patch.setattr(stream, "WORK_ROWS", 1000)
-        in_blocks = [track_file(file, method, start=START, **told) for method, told in ways]
+        in_blocks = [track(file, method, start=START, **told) for method, told in ways]
         with pytest.raises(InputError, match=r"long\.parquet: too long to be held at once"):
-            track_file(file, "iez")
+            track(file, "iez")
     for found, whole in zip(in_blocks, wholes, strict=True):
         np.testing.assert_allclose(found.track.position, whole.track.position, rtol=0, atol=1e-9)
         for key in ("rows", "doubled", "filled"):
@@ -138,6 +140,26 @@ def write_rows(file, recording, rows):
     columns |= {name: recording.gyro[rows, i] for i, name in enumerate(GYRO)}
     columns |= {name: recording.accel[rows, i] for i, name in enumerate(ACCEL)}
     pq.write_table(pa.table(columns), file)
+
+
+@pytest.mark.parametrize("format", ["footfall", "matlab"])
+def test_a_file_is_opened_once(tmp_path, monkeypatch, format):
+    """What is gone after it was opened could not be read again."""
+    truth = walk(np.zeros(6), still_s=6.0, rate=200.0)
+    file = tmp_path / ("a.mat" if format == "matlab" else "a.parquet")
+    if format == "matlab":
+        savemat(file, {"imu": np.hstack([truth.accel, truth.gyro]), "ts": 1 / 200})
+    else:
+        write_recording(Recording(truth.t, truth.gyro, truth.accel), file)
+
+    def open_and_lose(path, *how):
+        source = open_source(path, *how)
+        file.unlink()
+        return source
+
+    monkeypatch.setattr("footfall.tracking.open_source", open_and_lose)
+    result = track(file, "pdr")
+    assert (result.findings.format, result.findings.rows) == (format, len(truth.t))
 
 
 def test_memory_does_not_grow_with_the_file(tmp_path, monkeypatch):
@@ -157,7 +179,7 @@ def test_memory_does_not_grow_with_the_file(tmp_path, monkeypatch):
         pool = pa.system_memory_pool()
         monkeypatch.setattr("footfall.formats.table.pa_csv.open_csv", partial(OPEN, memory_pool=pool))
         tracemalloc.start()
-        result = track_file(tmp_path / "a.csv", "hdr")
+        result = track(tmp_path / "a.csv", "hdr")
         _, most = tracemalloc.get_traced_memory()
         tracemalloc.stop()
         assert len(result.track) == strides + 2
