@@ -31,6 +31,9 @@ _TRUTH = {"px", "py", "pz", "qw", "qx", "qy", "qz"}
 class Recording:
     """IMU samples in the body frame (x forward, y left, z up when level).
 
+    Its arrays cannot be written into: what one method gets, the next one gets. Change a copy (scipy's
+    `Rotation.apply` wants one too).
+
     Attributes
     ----------
     t : (n,) s, from the first sample; each stamp ends its sampling interval
@@ -71,6 +74,19 @@ class Recording:
         if (step <= 0).any():
             row = int(np.argmax(step <= 0)) + 1
             raise InputError(f"t does not increase at row {row} (t = {self.t[row]:.6g} s)", "recording")
+        self._lock()
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        # Pickled arrays come back writeable.
+        self.__dict__.update(state)
+        self._lock()
+
+    def _lock(self) -> None:
+        for name in ("t", "gyro", "accel", "temperature"):
+            if (values := getattr(self, name)) is not None:
+                view = values.view()
+                view.flags.writeable = False
+                object.__setattr__(self, name, view)
 
     @property
     def interval(self) -> float:

@@ -338,8 +338,8 @@ def test_a_right_recording_passes_however_it_is_mounted(tmp_path_factory, foot, 
     file = written(
         foot,
         tmp_path_factory.getbasetemp(),
-        gyro=turn.apply(foot.gyro) * (1 + error) + error / 5,
-        accel=turn.apply(foot.accel) + error,
+        gyro=turn.apply(foot.gyro.copy()) * (1 + error) + error / 5,
+        accel=turn.apply(foot.accel.copy()) + error,
     )
     found, _ = read(file)
     assert len(found.t) == len(foot.t)
