@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import mujoco
 
 import footfall.models
-from footfall import conventions, streams
+from footfall import conventions, runs, streams
 from footfall.identity import WalkIdentity, digest_of, plain
 from footfall.models.body import MOUNTS, Mount
 from footfall.models.policy import Policy
@@ -40,6 +40,6 @@ def mount_name(mount: Mount) -> str:
 def source_digest() -> str:
     """Hash of the code that makes walks."""
     rooms = [Path(footfall.models.__file__).parent, Path(__file__).parent]
-    shared = [Path(str(module.__file__)) for module in (conventions, streams)]
+    shared = [Path(str(module.__file__)) for module in (conventions, runs, streams)]
     sources = sorted([*shared, *(path for room in rooms for path in room.rglob("*.py"))])
     return digest_of([(source.name, source.read_bytes()) for source in sources])

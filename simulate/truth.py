@@ -15,6 +15,7 @@ import numpy as np
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
+from footfall.runs import runs
 from footfall.simulate._truth_kernels import increments
 
 # The foot is at rest on the ground: it carries load while the IMU neither travels nor turns fast.
@@ -102,9 +103,3 @@ def at_rest(truth: ImuTruth, contact: np.ndarray, interval: float) -> np.ndarray
         if (end - start) * interval < _SHORTEST_STANCE_S:
             rest[start:end] = False
     return rest
-
-
-def runs(flag: np.ndarray) -> np.ndarray:
-    """(m, 2) first and one-past-last row of each run of True."""
-    edges = np.diff(np.concatenate([[False], flag, [False]]).astype(np.int8))
-    return np.column_stack([np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)])

@@ -13,10 +13,11 @@ import numpy as np
 from footfall.conventions import GRAVITY, heading_of
 from footfall.models import body
 from footfall.models.policy import Policy, stock_policy
+from footfall.runs import runs
 from footfall.simulate.episode import STAND_S, FallError, planned_pushes, stroll
 from footfall.simulate.identity import walk_identity
 from footfall.simulate.plan import PHYSICS_STEP, Plan, versions
-from footfall.simulate.truth import ImuTruth, at_rest, divisor, imu_truth, runs
+from footfall.simulate.truth import ImuTruth, at_rest, divisor, imu_truth
 from footfall.simulate.walk import TrueFootfalls, Walk
 from footfall.simulate.walker.steering import StrayError
 

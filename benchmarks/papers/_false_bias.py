@@ -29,8 +29,8 @@ from footfall.pdr.filter.ins import (
     InertialFilter,
 )
 from footfall.pdr.filter.run import align, run_filter, updates
-from footfall.pdr.stance import runs
 from footfall.pdr.strapdown import integrate
+from footfall.runs import runs
 
 PAPER = FilterSettings.paper()
 
@@ -86,8 +86,8 @@ class Feet:
             now.advance(recording.t[rows], recording.gyro[rows], recording.accel[rows], update)
         score = found.score
         place = np.zeros(n)
-        for first, last in runs(score < 1.0):
-            place[first : last + 1] = (np.arange(last - first + 1) + 0.5) / (last - first + 1)
+        for start, stop in runs(score < 1.0):
+            place[start:stop] = (np.arange(stop - start) + 0.5) / (stop - start)
         still = (score < 1.0) & (np.arange(n) > resets[0]) & (np.arange(n) <= resets[-1])
         direction = self._directions(n)
         body = np.einsum("nji,nj->ni", _matrices(quaternion), velocity)[still]

@@ -19,10 +19,10 @@ from rich.table import Table
 from benchmarks._common import options, out, run_all, write_json
 from footfall.models.body import Ground
 from footfall.models.subject import draw_subject
+from footfall.runs import runs
 from footfall.scenarios.path import PathSpec, build_path
 from footfall.simulate.episode import FallError
 from footfall.simulate.plan import Gait, Plan, Stop
-from footfall.simulate.truth import runs
 from footfall.simulate.walk import Walk
 from footfall.simulate.walker.steering import StrayError
 from footfall.simulate.walking import walk

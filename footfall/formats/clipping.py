@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
+from footfall.runs import runs
+
 HELD_S = 0.003  # a clipped signal stays at its extreme at least so long, and three samples
 BEYOND = 1.6  # ranges: no peak is restored higher
 
@@ -28,19 +30,18 @@ def clipped_runs(channel: np.ndarray, interval: float, least: float) -> np.ndarr
     found = [np.empty((0, 2), dtype=int)]
     for extreme in (channel.min(), channel.max()):
         if abs(extreme) >= least:
-            edges = np.diff(np.concatenate([[False], channel == extreme, [False]]).astype(np.int8))
-            runs = np.flatnonzero(edges).reshape(-1, 2)
-            found.append(runs[runs[:, 1] - runs[:, 0] >= long])
+            held = runs(channel == extreme)
+            found.append(held[held[:, 1] - held[:, 0] >= long])
     return np.concatenate(found)
 
 
-def restored(channel: np.ndarray, runs: np.ndarray) -> np.ndarray:
-    """A channel (n,) whose clipped runs are bridged by cubics that go on as the signal came and left.
+def restored(channel: np.ndarray, clipped: np.ndarray) -> np.ndarray:
+    """A channel (n,) whose `clipped` runs are bridged by cubics that go on as the signal came and left.
 
     Of seven real walks clipped on purpose at 300 to 450 deg/s, dead reckoning's error more than halves.
     """
     channel = channel.copy()
-    for start, stop in runs:
+    for start, stop in clipped:
         if start < 2 or stop > len(channel) - 2:
             continue
         limit = channel[start]

@@ -23,8 +23,8 @@ from footfall.pdr.filter.ins import (
 from footfall.pdr.filter.smooth import Node, smoothed
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.reckoning import Detected, PdrParams, Rest, StartPose, detect, level_attitude
-from footfall.pdr.stance import runs
 from footfall.recording import Recording
+from footfall.runs import runs
 
 
 @dataclass(frozen=True)
@@ -202,17 +202,17 @@ def updates(t: np.ndarray, found: Detected, still_period_s: float | None) -> np.
         resets = found.stances.resets[: len(one_a_stance)]
         update[resets] = np.where(one_a_stance, ZERO_VELOCITY, ZERO_RATE)
     else:
-        for first, last in runs(found.score < 1.0):
-            long = t[last] - t[first] > still_period_s
-            update[first : last + 1] = ZERO_RATE if long else ZERO_VELOCITY
+        for start, stop in runs(found.score < 1.0):
+            long = t[stop - 1] - t[start] > still_period_s
+            update[start:stop] = ZERO_RATE if long else ZERO_VELOCITY
     return update
 
 
 def _still_time(t: np.ndarray, score: np.ndarray, footfalls: np.ndarray) -> np.ndarray:
     """(k,) s that the foot is at rest around each of the samples `footfalls`; by their `score` (n,)."""
     found = runs(score < 1.0)
-    first, last = found[np.maximum(np.searchsorted(found[:, 0], footfalls, side="right") - 1, 0)].T
-    return t[last] - t[first]
+    start, stop = found[np.maximum(np.searchsorted(found[:, 0], footfalls, side="right") - 1, 0)].T
+    return t[stop - 1] - t[start]
 
 
 def _filtered(states: Sequence[InertialFilter], start: StartPose, innovation: np.ndarray) -> Filtered:

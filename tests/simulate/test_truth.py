@@ -9,8 +9,9 @@ from scipy.spatial.transform import Rotation
 from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
 from footfall.pdr.strapdown import integrate
+from footfall.runs import runs
 from footfall.simulate._truth_kernels import increments
-from footfall.simulate.truth import ImuTruth, at_rest, divisor, imu_truth, runs
+from footfall.simulate.truth import ImuTruth, at_rest, divisor, imu_truth
 
 STEP = 0.001
 
@@ -77,12 +78,6 @@ def test_rates_that_divide() -> None:
 def test_too_short_a_record_is_refused() -> None:
     with pytest.raises(InputError, match="too few"):
         imu_truth(np.zeros((4, 3)), np.tile([1.0, 0, 0, 0], (4, 1)), STEP, 5)
-
-
-def test_runs_are_half_open_and_cover_the_flags() -> None:
-    flag = np.array([True, True, False, True, False, False, True])
-    assert runs(flag).tolist() == [[0, 2], [3, 4], [6, 7]]
-    assert runs(np.zeros(3, dtype=bool)).shape == (0, 2)
 
 
 def test_rest_needs_load_slowness_and_length() -> None:

@@ -12,10 +12,10 @@ from footfall.models.policy import Policy, stock_policy
 from footfall.models.route import Route
 from footfall.models.subject import SUBJECTS, Subject
 from footfall.pdr.strapdown import integrate
+from footfall.runs import runs
 from footfall.simulate.cache import cached_walk, plan_key
 from footfall.simulate.episode import STAND_S, Episode, FallError
 from footfall.simulate.plan import Disturbance, Gait, Pace, Plan, Stop
-from footfall.simulate.truth import runs
 from footfall.simulate.walk import Walk, footfalls_path, read_walk, write_walk
 from footfall.simulate.walking import walk
 
