@@ -1,4 +1,4 @@
-"""Compiled strapdown. The faces that explain and check are strapdown.py and pdr.py.
+"""Compiled strapdown. The faces that explain and check are strapdown.py and reckoning.py.
 
 Quaternions and vectors are tuples of floats here: small, and never allocated.
 """
@@ -72,9 +72,10 @@ def integrate(t, gyro, accel, q0, v0, p0):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def reckon(t, gyro, accel, q0, resets, tilt_gain):  # type: ignore[no-untyped-def]
-    """Attitude and position at each of `resets`, where the velocity is zero. Explained in pdr.py.
+def reckon(t, gyro, accel, bias, q0, resets, tilt_gain):  # type: ignore[no-untyped-def]
+    """Attitude and position at each of `resets`, where the velocity is zero. Explained in reckoning.py.
 
+    bias : (3,) rad/s, is taken off the gyro
     resets[0] is the sample that the pose (q0, origin) belongs to.
     """
     m = len(resets)
@@ -86,7 +87,8 @@ def reckon(t, gyro, accel, q0, resets, tilt_gain):  # type: ignore[no-untyped-de
         first, last = resets[j - 1], resets[j]
         v, p = zero, zero
         for k in range(first + 1, last + 1):
-            q, v, p = advance(q, v, p, gyro[k], accel[k], t[k] - t[k - 1])
+            rate = (gyro[k, 0] - bias[0], gyro[k, 1] - bias[1], gyro[k, 2] - bias[2])
+            q, v, p = advance(q, v, p, rate, accel[k], t[k] - t[k - 1])
         duration = t[last] - t[first]
         for i in range(3):
             position[j, i] = position[j - 1, i] + p[i] - 0.5 * duration * v[i]

@@ -8,6 +8,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
+from footfall.pdr._detection import BARELY, SLACK
+from footfall.pdr.stance import StanceParams, Stances, ThresholdDetector, moving_mean
+from footfall.runs import runs
 
 
 class Strapdown:
@@ -51,11 +54,17 @@ def integrate(
 
 
 def reckon(
-    t: np.ndarray, gyro: np.ndarray, accel: np.ndarray, q0: np.ndarray, resets: np.ndarray, tilt_gain: float
+    t: np.ndarray,
+    gyro: np.ndarray,
+    accel: np.ndarray,
+    bias: np.ndarray,
+    q0: np.ndarray,
+    resets: np.ndarray,
+    tilt_gain: float,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Twin of `_kernels.reckon`."""
     zero = np.zeros(3)
-    state, half = Strapdown(q0, zero, zero), half_turns(t, gyro)
+    state, half = Strapdown(q0, zero, zero), half_turns(t, gyro - bias)
     quaternion, position = [state.quaternion], [zero]
     for first, last in pairwise(resets):
         state.velocity, state.position = zero, zero
@@ -67,3 +76,61 @@ def reckon(
         state.attitude = Rotation.from_rotvec(tilt_gain * error).as_matrix() @ state.attitude
         quaternion.append(state.quaternion)
     return np.array(quaternion), np.array(position)
+
+
+def threshold(t: np.ndarray, gyro: np.ndarray, accel: np.ndarray, detector: ThresholdDetector) -> np.ndarray:
+    """Twin of `ThresholdDetector`'s score."""
+    rate = np.linalg.norm(moving_mean(gyro, t, detector.window_s), axis=1)
+    force = np.linalg.norm(moving_mean(accel, t, detector.window_s), axis=1)
+    score = np.maximum(rate / detector.gyro_max, np.abs(force - GRAVITY) / detector.accel_max)
+    return np.where(np.isnan(score), np.inf, score)
+
+
+def means(t: np.ndarray, gyro: np.ndarray, accel: np.ndarray, window_s: float) -> np.ndarray:
+    """Twin of `_detection.means`."""
+    values = np.column_stack(
+        [
+            accel,
+            (accel**2).sum(axis=1),
+            (gyro**2).sum(axis=1),
+            (np.linalg.norm(accel, axis=1) - GRAVITY) ** 2,
+        ]
+    )
+    total = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
+    stop = np.searchsorted(t, t + window_s + SLACK)
+    return ((total[stop] - total[:-1]) / (stop - np.arange(len(t)))[:, None]).T
+
+
+def held(t: np.ndarray, value: np.ndarray, window_s: float) -> np.ndarray:
+    """Twin of `_detection.held`."""
+    about = value[np.searchsorted(t, t - window_s / 2 - SLACK)]
+    first = np.searchsorted(t, t - window_s - SLACK)
+    least = np.array([value[a : k + 1].min() for k, a in enumerate(first)])
+    return np.where((about >= 1) & (least < 1), BARELY, about)
+
+
+def find_stances(t: np.ndarray, score: np.ndarray, params: StanceParams) -> Stances:
+    """Twin of `stance.find_stances`."""
+    kept: list[np.ndarray] = []
+    for start, stop in runs(score < 1.0):
+        if t[stop - 1] - t[start] < params.min_stance_s:
+            continue
+        resets = _resets(t, score, start, stop, params.reset_s)
+        if kept and t[resets[0]] - t[kept[-1][-1]] < params.min_stride_s:
+            if score[resets].min() >= score[kept[-1]].min():
+                continue
+            kept.pop()
+        kept.append(resets)
+    counts = np.array([len(resets) for resets in kept], dtype=int)
+    return Stances(
+        resets=np.concatenate(kept) if kept else np.empty(0, dtype=int), footfalls=np.cumsum(counts) - 1
+    )
+
+
+def _resets(t: np.ndarray, score: np.ndarray, start: int, stop: int, reset_s: float) -> np.ndarray:
+    """The quietest instant of a stance, or of each part of a still period."""
+    duration = t[stop - 1] - t[start]
+    parts = int(duration / reset_s) if duration > 2 * reset_s else 1
+    edges = np.searchsorted(t[start:stop], t[start] + np.arange(1, parts) * (duration / parts)) + start
+    bounds = np.concatenate([[start], edges, [stop]])
+    return np.array([a + np.argmin(score[a:b]) for a, b in pairwise(bounds) if b > a])

@@ -15,79 +15,62 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
-from footfall.pdr.stance import Detector, ThresholdDetector
+from footfall.pdr import _detection
+from footfall.pdr.stance import Detector, ThresholdDetector, compact
 from footfall.settings import require, setting
 
-_BARELY = math.nextafter(1.0, 0.0)  # at rest, but no candidate for the quietest instant
-_SLACK = 1e-6  # s; stamps are decimal numbers: a sample on the window's edge counts
 
-
-@dataclass(frozen=True)
-class Windows:
-    """The window that begins at each sample: samples [i, stop[i]) are within `window_s` of sample i.
+class Means(NamedTuple):
+    """Means (n,) over the window that begins at each sample.
 
     Attributes
     ----------
-    stop : (n,) one past the last sample of each
-    first : (n,) the first window that holds sample k; the last is k itself
+    x, y, z : m/s2, force
+    force2 : (m/s2)^2, square of the force
+    rate2 : (rad/s)^2, square of the rate
+    off2 : (m/s2)^2, square of the deviation of the force's norm from g
     """
 
-    stop: np.ndarray
-    first: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+    force2: np.ndarray
+    rate2: np.ndarray
+    off2: np.ndarray
 
-    @classmethod
-    def of(cls, t: np.ndarray, window_s: float) -> Windows:
-        return cls(
-            stop=np.searchsorted(t, t + window_s + _SLACK), first=np.searchsorted(t, t - window_s - _SLACK)
-        )
-
-    def mean(self, values: np.ndarray) -> np.ndarray:
-        """Mean of (n, ...) values over each window."""
-        total = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
-        start = np.arange(len(values))
-        count = (self.stop - start).reshape((-1,) + (1,) * (values.ndim - 1))
-        return (total[self.stop] - total[start]) / count
-
-    def least(self, statistic: np.ndarray) -> np.ndarray:
-        """For each sample the least (n,) statistic of the windows that hold it."""
-        low, length = self.first, np.arange(len(statistic)) + 1 - self.first
-        out = np.empty_like(statistic)
-        # Minima over spans of 1, 2, 4, ... windows: any range is two of them.
-        spans, span = statistic, 1
-        while True:
-            rows = np.flatnonzero((length >= span) & (length < 2 * span))
-            out[rows] = np.minimum(spans[low[rows]], spans[rows + 1 - span])
-            if 2 * span > length.max(initial=0):
-                return out
-            spans = np.minimum(spans[:-span], spans[span:])
-            span *= 2
-
-
-Statistic = Callable[[Windows, np.ndarray, np.ndarray], np.ndarray]
+    @property
+    def along2(self) -> np.ndarray:
+        """(m/s2)^2, square of the mean force."""
+        return self.x**2 + self.y**2 + self.z**2
 
 
 def scored(
-    t: np.ndarray, gyro: np.ndarray, accel: np.ndarray, window_s: float, statistic: Statistic
+    t: np.ndarray,
+    gyro: np.ndarray,
+    accel: np.ndarray,
+    window_s: float,
+    statistic: Callable[[Means], np.ndarray],
 ) -> np.ndarray:
     """A detector's scores (n,).
 
     `statistic` gives, over its threshold, the value (n,) of the window that begins at each sample.
     """
-    finite = np.isfinite(gyro).all(axis=1) & np.isfinite(accel).all(axis=1)
-    windows = Windows.of(t, window_s)
-    whole = finite.all()
+    found, whole = _detection.means(compact(t), compact(gyro), compact(accel), window_s)
     if not whole:
+        finite = (np.isfinite(gyro) & np.isfinite(accel)).all(axis=1)
         gyro, accel = np.where(finite[:, None], gyro, 0.0), np.where(finite[:, None], accel, 0.0)
-    value = np.maximum(statistic(windows, gyro, accel), 0.0)  # rounding
+        found, _ = _detection.means(compact(t), gyro, accel, window_s)
+    value = np.maximum(statistic(Means(*found)), 0.0)  # rounding
     if not whole:
-        value = np.where(windows.mean(finite.astype(float)) < 1, np.inf, value)
-    about = value[np.searchsorted(t, t - window_s / 2 - _SLACK)]
-    return np.where((about >= 1) & (windows.least(value) < 1), _BARELY, about)
+        lost = np.concatenate([[0], np.cumsum(~finite)])
+        value[lost[np.searchsorted(t, t + window_s + _detection.SLACK)] > lost[:-1]] = np.inf
+    return np.asarray(_detection.held(compact(t), compact(value), window_s))
 
 
 @dataclass(frozen=True)
@@ -114,12 +97,10 @@ class Shoe:
         require("shoe", self)
 
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
-        def statistic(windows: Windows, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
+        def statistic(mean: Means) -> np.ndarray:
             # mean |f - g u|^2 = mean |f|^2 - 2 g |mean f| + g^2, for u is along the mean
-            force = np.linalg.norm(windows.mean(accel), axis=1)
-            off = windows.mean((accel**2).sum(axis=1)) - 2 * GRAVITY * force + GRAVITY**2
-            turn = windows.mean((gyro**2).sum(axis=1))
-            return (off / self.sigma_accel**2 + turn / self.sigma_gyro**2) / self.threshold
+            off = mean.force2 - 2 * GRAVITY * np.sqrt(mean.along2) + GRAVITY**2
+            return (off / self.sigma_accel**2 + mean.rate2 / self.sigma_gyro**2) / self.threshold
 
         return scored(t, gyro, accel, self.window_s, statistic)
 
@@ -141,9 +122,7 @@ class AngularRateEnergy:
         require("are", self)
 
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
-        return scored(
-            t, gyro, accel, self.window_s, lambda w, gyro, _: w.mean((gyro**2).sum(axis=1)) / self.rate_max**2
-        )
+        return scored(t, gyro, accel, self.window_s, lambda mean: mean.rate2 / self.rate_max**2)
 
 
 @dataclass(frozen=True)
@@ -165,11 +144,9 @@ class MovingVariance:
         require("mv", self)
 
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
-        def statistic(windows: Windows, _: np.ndarray, accel: np.ndarray) -> np.ndarray:
-            spread = windows.mean((accel**2).sum(axis=1)) - (windows.mean(accel) ** 2).sum(axis=1)
-            return spread / self.sd_max**2
-
-        return scored(t, gyro, accel, self.window_s, statistic)
+        return scored(
+            t, gyro, accel, self.window_s, lambda mean: (mean.force2 - mean.along2) / self.sd_max**2
+        )
 
 
 @dataclass(frozen=True)
@@ -192,11 +169,7 @@ class Magnitude:
         require("mag", self)
 
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
-        def statistic(windows: Windows, _: np.ndarray, accel: np.ndarray) -> np.ndarray:
-            off = np.linalg.norm(accel, axis=1) - GRAVITY
-            return windows.mean(off**2) / self.off_max**2
-
-        return scored(t, gyro, accel, self.window_s, statistic)
+        return scored(t, gyro, accel, self.window_s, lambda mean: mean.off2 / self.off_max**2)
 
 
 @dataclass(frozen=True)
@@ -224,9 +197,8 @@ class Adaptive:
         require("adaptive", self)
 
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
-        def statistic(windows: Windows, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
-            turn = np.sqrt(windows.mean((gyro**2).sum(axis=1)))
-            force = np.sqrt(windows.mean((np.linalg.norm(accel, axis=1) - GRAVITY) ** 2))
+        def statistic(mean: Means) -> np.ndarray:
+            turn, force = np.sqrt(mean.rate2), np.sqrt(mean.off2)
             return np.maximum(
                 turn / (self.share * self._level(t, turn, SWING_RATE)),
                 force / (self.share * self._level(t, force, SWING_FORCE)),

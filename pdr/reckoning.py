@@ -17,8 +17,9 @@ from scipy.spatial.transform import Rotation
 from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
 from footfall.pdr import _kernels
+from footfall.pdr._detection import less
 from footfall.pdr.footfalls import Footfalls
-from footfall.pdr.stance import Detector, StanceParams, Stances, ThresholdDetector, find_stances
+from footfall.pdr.stance import Detector, StanceParams, Stances, ThresholdDetector, compact, find_stances
 from footfall.pdr.strapdown import ORIGIN
 from footfall.recording import Recording
 from footfall.settings import require, setting
@@ -221,9 +222,10 @@ def dead_reckon(
     found = found or detect(recording, params)
     rest, stances, resets = found.rest, found.stances, found.stances.resets
     quaternion, position = _kernels.reckon(
-        np.ascontiguousarray(recording.t, dtype=float),
-        np.ascontiguousarray(recording.gyro - rest.gyro_bias),
-        np.ascontiguousarray(recording.accel, dtype=float),
+        compact(recording.t),
+        compact(recording.gyro),
+        compact(recording.accel),
+        rest.gyro_bias,
         level_attitude(rest.force),
         resets,
         params.tilt_gain,
@@ -252,15 +254,25 @@ def detect(recording: Recording, params: PdrParams) -> Detected:
         No rest at the start, no stride after it, or a hole in the samples that is too long.
     """
     rest = static_bias(recording, params.bias_s)
-    t = recording.t[1:]
-    score = params.detector(t, recording.gyro[1:] - rest.gyro_bias, recording.accel[1:])
-    # The averaged part is at rest, whatever the detector thinks of it.
-    score = np.where(np.arange(len(t)) < rest.last, np.minimum(score, 0.5), score)
-    stances = _stances_after(rest, find_stances(t, score, params.stance))
+    score = scores(recording, rest, params.detector, still=rest.last)
+    stances = _stances_after(rest, find_stances(recording.t[1:], score[1:], params.stance))
     if len(stances.footfalls) < 2:
         raise InputError(f"no stride found after the {params.bias_s:g} s at rest", "recording")
     refuse_gaps(recording.t, int(stances.resets[0]), int(stances.resets[-1]), params.max_gap_s)
-    return Detected(rest=rest, score=np.concatenate([score[:1], score]), stances=stances)
+    return Detected(rest=rest, score=score, stances=stances)
+
+
+def scores(recording: Recording, rest: Rest, detector: Detector, still: int) -> np.ndarray:
+    """(n,) the detector's scores; of row 0, which is before the record, that of row 1.
+
+    still : rows 1 to `still` are at rest, whatever the detector thinks of them
+    """
+    gyro = less(compact(recording.gyro)[1:], rest.gyro_bias)
+    score = np.empty(len(recording.t))
+    score[1:] = detector(recording.t[1:], gyro, recording.accel[1:])
+    np.minimum(score[1 : still + 1], 0.5, out=score[1 : still + 1])
+    score[0] = score[1]
+    return score
 
 
 def _stances_after(rest: Rest, found: Stances) -> Stances:

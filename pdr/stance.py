@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
 
-from footfall.conventions import GRAVITY
+from footfall.pdr import _detection
 from footfall.settings import require, setting
 
 
@@ -44,10 +43,20 @@ class ThresholdDetector:
         require("threshold", self)
 
     def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
-        rate = np.linalg.norm(moving_mean(gyro, t, self.window_s), axis=1)
-        force = np.linalg.norm(moving_mean(accel, t, self.window_s), axis=1)
-        score = np.maximum(rate / self.gyro_max, np.abs(force - GRAVITY) / self.accel_max)
-        return np.where(np.isnan(score), np.inf, score)
+        score, whole = self._score(t, gyro, accel)
+        if whole:
+            return score
+        finite = np.isfinite(gyro), np.isfinite(accel)
+        score, _ = self._score(t, np.where(finite[0], gyro, 0.0), np.where(finite[1], accel, 0.0))
+        share = moving_mean(np.hstack(finite).all(axis=1).astype(float), t, self.window_s)
+        return np.where(share < 1, np.inf, score)
+
+    def _score(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> tuple[np.ndarray, bool]:
+        """The score, and whether it means something: whether all sums were finite."""
+        score, whole = _detection.threshold(
+            compact(t), compact(gyro), compact(accel), self.window_s, self.gyro_max, self.accel_max
+        )
+        return score, whole
 
 
 @dataclass(frozen=True)
@@ -83,6 +92,11 @@ class Stances:
     footfalls: np.ndarray
 
 
+def compact(values: np.ndarray) -> np.ndarray:
+    """Values as the kernels take them, floats row by row: the same array where it is that."""
+    return np.ascontiguousarray(values, dtype=float)
+
+
 def moving_mean(values: np.ndarray, t: np.ndarray, window_s: float) -> np.ndarray:
     """Mean of (n, ...) values over a centred window of `window_s` seconds, cut at the record's ends.
 
@@ -93,9 +107,8 @@ def moving_mean(values: np.ndarray, t: np.ndarray, window_s: float) -> np.ndarra
     if not finite.all():
         share = moving_mean(finite.astype(float), t, window_s)
         return np.where(share < 1, np.nan, moving_mean(np.where(finite, values, 0.0), t, window_s))
-    slack = 1e-6  # stamps are decimal numbers: a sample on the window's edge counts
-    low = np.searchsorted(t, t - window_s / 2 - slack)
-    high = np.searchsorted(t, t + window_s / 2 + slack)
+    low = np.searchsorted(t, t - window_s / 2 - _detection.SLACK)
+    high = np.searchsorted(t, t + window_s / 2 + _detection.SLACK)
     total = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
     count = (high - low).reshape((-1,) + (1,) * (values.ndim - 1))
     return (total[high] - total[low]) / count
@@ -116,33 +129,7 @@ def find_stances(t: np.ndarray, score: np.ndarray, params: StanceParams | None =
     grow with the cube of the time between them.
     """
     params = params or StanceParams()
-    kept: list[np.ndarray] = []
-    for start, stop in runs(score < 1.0):
-        if t[stop] - t[start] < params.min_stance_s:
-            continue
-        resets = _resets(t, score, start, stop, params.reset_s)
-        if kept and t[resets[0]] - t[kept[-1][-1]] < params.min_stride_s:
-            if score[resets].min() >= score[kept[-1]].min():
-                continue
-            kept.pop()
-        kept.append(resets)
-    counts = np.array([len(resets) for resets in kept], dtype=int)
-    return Stances(
-        resets=np.concatenate(kept) if kept else np.empty(0, dtype=int), footfalls=np.cumsum(counts) - 1
+    resets, footfalls = _detection.stances(
+        compact(t), compact(score), params.min_stance_s, params.min_stride_s, params.reset_s
     )
-
-
-def runs(flags: np.ndarray) -> np.ndarray:
-    """First and last index of each run of true flags: (k, 2)."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]])))
-    return edges.reshape(-1, 2) - [0, 1]
-
-
-def _resets(t: np.ndarray, score: np.ndarray, start: int, stop: int, reset_s: float) -> np.ndarray:
-    """The quietest instant of a stance, or of each part of a still period."""
-    duration = t[stop] - t[start]
-    parts = int(duration / reset_s) if duration > 2 * reset_s else 1
-    edges = np.searchsorted(t[start : stop + 1], t[start] + np.arange(1, parts) * (duration / parts)) + start
-    bounds = np.concatenate([[start], edges, [stop + 1]])
-    # A gap in the samples may leave a part empty.
-    return np.array([a + np.argmin(score[a:b]) for a, b in pairwise(bounds) if b > a])
+    return Stances(resets=resets, footfalls=footfalls)

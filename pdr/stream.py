@@ -17,10 +17,12 @@ from footfall.pdr.reckoning import (
     level_attitude,
     placed,
     refuse_gaps,
+    scores,
     static_bias,
 )
-from footfall.pdr.stance import find_stances, runs
+from footfall.pdr.stance import compact, find_stances
 from footfall.recording import Recording
+from footfall.runs import runs
 
 WORK_ROWS = 1 << 16  # samples that are worth looking at anew
 MOST_ROWS = 1 << 19  # samples that may wait for a stance
@@ -114,9 +116,7 @@ class _Walker:
         self.looked = len(held.t)
         rest, params, t = self.rest, self.params, held.t
         carry = rest.last
-        score = params.detector(t[1:], held.gyro[1:] - rest.gyro_bias, held.accel[1:])
-        if not self.begun:  # the averaged part is at rest, whatever the detector thinks of it
-            score = np.where(np.arange(len(score)) < carry, np.minimum(score, 0.5), score)
+        score = scores(held, rest, params.detector, still=0 if self.begun else carry)[1:]
         found = find_stances(t[1:], score, params.stance)
         resets, footfalls = found.resets + 1, found.footfalls
         later = resets > carry
@@ -154,7 +154,7 @@ class _Walker:
         later, `find_stances` finds it again and nothing before it matters.
         """
         stance = self.params.stance
-        rests = runs(score < 1.0) + 1
+        rests = runs(score < 1.0) + np.array([1, 0])  # first row and last
         rests = rests[t[rests[:, 1]] - t[rests[:, 0]] >= stance.min_stance_s]
         if not len(rests):
             return None, 0
@@ -180,9 +180,10 @@ class _Walker:
         if len(resets) > 1:
             refuse_gaps(held.t, int(resets[0]), int(resets[-1]), self.params.max_gap_s)
         quaternion, position = _kernels.reckon(
-            np.ascontiguousarray(held.t, dtype=float),
-            np.ascontiguousarray(held.gyro - self.rest.gyro_bias),
-            np.ascontiguousarray(held.accel, dtype=float),
+            compact(held.t),
+            compact(held.gyro),
+            compact(held.accel),
+            self.rest.gyro_bias,
             np.asarray(self.quaternion, dtype=float),
             resets,
             self.params.tilt_gain,

@@ -18,7 +18,7 @@ import numpy as np
 from rich.table import Table
 
 from benchmarks._common import options, out, write_json
-from benchmarks.speed.navigation import RATE, stepping
+from benchmarks.speed.navigation import RATE, seconds, stepping
 from footfall.pdr.filter._plain import PlainFilter
 from footfall.pdr.filter.ins import ZERO_VELOCITY, Alignment, FilterSettings, InertialFilter
 from footfall.pdr.filter.run import align, run_filter, run_filters, updates
@@ -27,17 +27,6 @@ from footfall.recording import Recording
 
 TARGET_NS = 1500.0
 SHORT_S = 20.0  # of the record, for what is slow
-
-
-def seconds(work: Callable[[], object], repeats: int = 5) -> float:
-    """Least processor time of several runs; the first, which compiles, is not counted."""
-    work()
-    best = float("inf")
-    for _ in range(repeats):
-        start = time.process_time()
-        work()
-        best = min(best, time.process_time() - start)
-    return best
 
 
 def cores_used(work: Callable[[], object]) -> float:

@@ -1,5 +1,7 @@
 """How fast navigation is, beside plain Python in the same run: trust the ratios more than the times.
 
+Processor time is told, so that a busy machine changes little.
+
 python -m benchmarks.speed.navigation
 """
 
@@ -15,8 +17,9 @@ from footfall.conventions import GRAVITY
 from footfall.hdr.hdr import HdrParams, headings, trace
 from footfall.hdr.methods import Reckoning, tracks
 from footfall.pdr import _kernels, _plain
+from footfall.pdr.detectors import DETECTORS
 from footfall.pdr.footfalls import Footfalls
-from footfall.pdr.reckoning import dead_reckon
+from footfall.pdr.reckoning import PdrParams, dead_reckon, detect, level_attitude
 from footfall.recording import Recording
 
 RATE, STRIDE_S = 200, 1.1
@@ -48,37 +51,50 @@ def random_walks(count: int, footfalls: int) -> list[Footfalls]:
 
 
 def seconds(work: Callable[[], object], repeats: int = 5) -> float:
-    """Shortest of several runs; the first, which compiles, is not counted."""
+    """Least processor time of several runs; the first, which compiles, is not counted."""
     work()
-    best = np.inf
+    best = float("inf")
     for _ in range(repeats):
-        start = time.perf_counter()
+        start = time.process_time()
         work()
-        best = min(best, time.perf_counter() - start)
+        best = min(best, time.process_time() - start)
     return best
+
+
+def reckoning_shares(walk: Recording) -> None:
+    """Print what detection and the rest of dead reckoning cost beside their kernel."""
+    found = detect(walk, PdrParams())
+    rest, resets = found.rest, found.stances.resets
+    arguments = (walk.t, walk.gyro, walk.accel, rest.gyro_bias, level_attitude(rest.force), resets, 0.2)
+    kernel = seconds(lambda: _kernels.reckon(*arguments), 15)
+    shares = {
+        "strapdown and ZUPT, compiled": kernel,
+        "dead reckoning, stances known": seconds(lambda: dead_reckon(walk, found=found), 15),
+        "dead reckoning, detection included": seconds(lambda: dead_reckon(walk), 15),
+    }
+    for name, detector in DETECTORS.items():
+        params = PdrParams(detector=detector)
+        shares[f"detection, {name}"] = seconds(lambda params=params: detect(walk, params))
+    for name, spent in shares.items():
+        print(f"{name:34} {spent / len(walk.t) * 1e9:8.1f} ns a sample, {spent / kernel:.2f} of the kernel's")
 
 
 def main() -> None:
     """Print the table."""
     walk = stepping(20)
-    n = len(walk.t)
     whole = seconds(lambda: tracks(Reckoning(walk), ["pdr", "hdr"]))
-    pdr = seconds(lambda: dead_reckon(walk))
     print(f"20 min at {RATE} Hz, PDR + HDR     {whole:8.3f} s  (target 1 s)")
-    print(f"PDR, detection included        {pdr / n * 1e9:8.1f} ns a sample")
+    reckoning_shares(walk)
 
     # The kernel against its twin, on a minute of the walk.
     rows = slice(0, 85 * RATE)
     resets = np.arange(25 * RATE, 85 * RATE, int(STRIDE_S * RATE))
     level = np.array([1.0, 0.0, 0.0, 0.0])
-    arguments = (walk.t[rows], walk.gyro[rows], walk.accel[rows], level, resets, 0.2)
+    arguments = (walk.t[rows], walk.gyro[rows], walk.accel[rows], np.zeros(3), level, resets, 0.2)
     samples = resets[-1] - resets[0]
     compiled = seconds(lambda: _kernels.reckon(*arguments)) / samples
     plain = seconds(lambda: _plain.reckon(*arguments), 1) / samples
-    print(f"strapdown and ZUPT, compiled   {compiled * 1e9:8.1f} ns a sample")
-    print(
-        f"strapdown and ZUPT, numpy      {plain * 1e9:8.1f} ns a sample, {plain / compiled:.0f} times slower"
-    )
+    print(f"strapdown, numpy {plain * 1e9:26.1f} ns a sample, {plain / compiled:.0f} times slower")
 
     walks = random_walks(20, 1100)
     sets = [

@@ -42,7 +42,13 @@ def tilt_errors(truth, resets, gain, gyro_error=0.0):
     """Angle (rad) between true and estimated vertical at each reset."""
     attitudes = (
         _kernels.reckon(
-            truth.t, truth.gyro + gyro_error, truth.accel, truth.quaternion[resets[0]], resets, gain
+            truth.t,
+            truth.gyro + gyro_error,
+            truth.accel,
+            np.zeros(3),
+            truth.quaternion[resets[0]],
+            resets,
+            gain,
         )[0],
         truth.quaternion[resets],
     )
@@ -110,9 +116,9 @@ def test_any_mount_will_do(town, mount):
 def test_compiled_equals_plain(town):
     rows = slice(0, 6000)
     t, gyro, accel = town.t[rows], town.gyro[rows] + 0.01, town.accel[rows] + 0.1
-    resets = np.arange(10, 6000, 97)
-    compiled = _kernels.reckon(t, gyro, accel, town.quaternion[0], resets, 0.1)
-    plain = _plain.reckon(t, gyro, accel, town.quaternion[0], resets, 0.1)
+    bias, resets = np.array([0.004, -0.02, 0.03]), np.arange(10, 6000, 97)
+    compiled = _kernels.reckon(t, gyro, accel, bias, town.quaternion[0], resets, 0.1)
+    plain = _plain.reckon(t, gyro, accel, bias, town.quaternion[0], resets, 0.1)
     sign = np.sign(np.sum(compiled[0] * plain[0], axis=1))[:, None]
     np.testing.assert_allclose(compiled[0] * sign, plain[0], atol=1e-11)
     np.testing.assert_allclose(compiled[1], plain[1], atol=1e-9)
@@ -146,7 +152,9 @@ def test_trap_5_no_correction_turns_the_heading():
     true = Rotation.from_euler("ZYX", [50, 12, -7], degrees=True)
     wrong = Rotation.from_rotvec([0.03, -0.05, 0]) * true
     resets, force = np.arange(0, len(t), 30), np.ascontiguousarray(true.inv().apply(up))
-    quaternion, _ = _kernels.reckon(t, still, force, wrong.as_quat(scalar_first=True), resets, 0.1)
+    quaternion, _ = _kernels.reckon(
+        t, still, force, np.zeros(3), wrong.as_quat(scalar_first=True), resets, 0.1
+    )
     final = Rotation.from_quat(quaternion[-1], scalar_first=True)
     assert (final * true.inv()).magnitude() < 1e-4
     assert abs((final * wrong.inv()).as_rotvec()[2]) < 1e-9
