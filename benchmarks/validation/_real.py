@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -11,6 +10,8 @@ import numpy as np
 
 from footfall.formats import Findings, read
 from footfall.recording import Recording
+from footfall.scenarios.judge.reference import Footprints
+from footfall.tables import read_table
 
 BESIDE = Path(__file__).resolve().parents[3] / "shared" / "data"
 
@@ -47,15 +48,13 @@ class Real:
         return self._read[1]
 
     @cached_property
-    def footprints(self) -> np.ndarray | None:
-        """(n, 3) t (s), x, y (m): one a footfall, the first that of the start; y to the left."""
+    def footprints(self) -> Footprints | None:
+        """One a footfall, the first that of the start."""
         if self.prints is None:
             return None
-        with open(self.prints, newline="", encoding="utf-8") as file:
-            rows = [
-                [float(row[key]) for key in ("timestamp", "gcpX", "gcpY")] for row in csv.DictReader(file)
-            ]
-        return np.array(rows) * [1.0, 1.0, -1.0]  # theirs is a frame with z down
+        columns, _ = read_table(self.prints)
+        # Theirs is a frame with z down.
+        return Footprints(columns["timestamp"], np.column_stack([columns["gcpX"], -columns["gcpY"]]))
 
 
 def find(folder: Path) -> list[Real]:
@@ -72,16 +71,3 @@ def find(folder: Path) -> list[Real]:
         for path in sorted((folder / "xio").glob("*_walk.csv"))
     ]
     return found
-
-
-def rigid_fit(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
-    """(n, 2) points turned and shifted so that they lie best on (n, 2) others: no scaling, no mirror."""
-    a, b = ours @ [1, 1j], theirs @ [1, 1j]
-    turn = np.vdot(a - a.mean(), b - b.mean())
-    fitted = (a - a.mean()) * turn / abs(turn) + b.mean()
-    return np.column_stack([fitted.real, fitted.imag])
-
-
-def rigid_rmse(ours: np.ndarray, theirs: np.ndarray) -> float:
-    """RMS distance (m) of (n, 2) points after the best rotation and shift."""
-    return float(np.sqrt(np.mean(np.sum((rigid_fit(ours, theirs) - theirs) ** 2, axis=1))))

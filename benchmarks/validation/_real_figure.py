@@ -7,30 +7,23 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.validation._real import Real, rigid_fit
+from benchmarks.validation._real import Real
 from footfall.pdr.track import Track
+from footfall.scenarios.judge.reference import laid_on
 from footfall.scenarios.report.figures import head, label_edges, new_panels, save
 
 SHOWN = {"pdr": "#c1440e", "iez": "#1f6fb4", "iez-paper": "#888888"}
-NEAR_S = 0.6
 
 
 def laid(real: Real, track: Track) -> np.ndarray:
     """(n, 2) the track laid on the footprints; without any, turned along its first strides."""
-    place = track.position[:, :2] - track.position[0, :2]
     prints = real.footprints
-    if prints is None:
-        ahead = place[min(4, len(place) - 1)]
-        c, s = ahead / np.hypot(*ahead)
-        return np.asarray(place @ np.array([[c, -s], [s, c]]))
-    nearest = np.abs(track.t[:, None] - prints[:, 0]).argmin(axis=0)
-    near = np.abs(track.t[nearest] - prints[:, 0]) < NEAR_S
-    fitted = rigid_fit(place[nearest[near]], prints[near, 1:])
-    # The same motion for the footfalls that no footprint belongs to.
-    a, b = place[nearest[near]] @ [1, 1j], fitted @ [1, 1j]
-    turn = np.vdot(a - a.mean(), b - b.mean())
-    moved = (place @ [1, 1j] - a.mean()) * turn / abs(turn) + b.mean()
-    return np.column_stack([moved.real, moved.imag])
+    if prints is not None:
+        return laid_on(track, prints)(track.position[:, :2])
+    place = track.position[:, :2] - track.position[0, :2]
+    ahead = place[min(4, len(place) - 1)]
+    c, s = ahead / np.hypot(*ahead)
+    return np.asarray(place @ np.array([[c, -s], [s, c]]))
 
 
 def draw(reals: Sequence[Real], tracks: Mapping[tuple[str, str], Track], path: Path) -> None:
@@ -38,9 +31,8 @@ def draw(reals: Sequence[Real], tracks: Mapping[tuple[str, str], Track], path: P
     figure, panels = new_panels(len(reals), 3.1, 2.8, columns=4)
     for axis, real in zip(panels, reals, strict=True):
         if real.footprints is not None:
-            axis.plot(
-                *real.footprints[:, 1:].T, "o", ms=4.5, mfc="none", mec="#222222", mew=0.8, label="footprints"
-            )
+            place = real.footprints.position
+            axis.plot(*place.T, "o", ms=4.5, mfc="none", mec="#222222", mew=0.8, label="footprints")
         for name, colour in SHOWN.items():
             if (real.name, name) not in tracks:
                 continue

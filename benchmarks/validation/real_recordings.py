@@ -26,7 +26,7 @@ from rich.progress import track as progress
 
 from benchmarks._common import out
 from benchmarks._page import Sheet, by_name, fill
-from benchmarks.validation._real import BESIDE, Real, find, rigid_fit
+from benchmarks.validation._real import BESIDE, Real, find
 from footfall import __version__
 from footfall.errors import InputError
 from footfall.formats.condition import condition
@@ -39,13 +39,13 @@ from footfall.pdr.reckoning import PdrParams
 from footfall.pdr.rest import still_time
 from footfall.pdr.track import Track
 from footfall.recording import Recording
+from footfall.scenarios.judge.reference import score_closure, score_footprints
 from footfall.simulate.from_recording import add_errors
 
 STRIDES = {"openshoe 31": 50, "openshoe 44": 44, "xio long": 37, "xio short": 16}
 TUNED_ON = ("openshoe 31", "gdin 32", "xio short")  # the detectors' constants; the others judge
 # What is to be reached with one set of defaults: % of the distance, m to the footprints, m.
 TARGETS = {"openshoe": 0.5, "gdin": 0.35, "xio": 0.3}
-NEAR_S = 0.6  # a footfall further from a footprint's time is another one
 
 
 @dataclass(frozen=True)
@@ -77,26 +77,15 @@ def reckoning(real: Real, detector: str) -> Reckoning:
     return Reckoning(real.recording, pdr=params)
 
 
-def matched(track: Track, prints: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Positions (k, 2) and footprints (k, 2) that are near in time."""
-    nearest = np.abs(track.t[:, None] - prints[:, 0]).argmin(axis=0)
-    near = np.abs(track.t[nearest] - prints[:, 0]) < NEAR_S
-    return track.position[nearest[near], :2], prints[near, 1:]
-
-
 def judge(real: Real, detector: str, method: str, track: Track) -> Judged:
     """A track beside the truth that there is."""
-    steps = np.diff(track.position[:, :2], axis=0)
-    distance = float(np.hypot(*steps.T).sum())
-    prints = real.footprints
+    closed, prints = score_closure(track), real.footprints
     true = STRIDES[real.name] if prints is None else len(prints) - 1
-    found = Judged(real.name, detector, method, len(track) - 1, len(track) - 1 - true, distance)
+    found = Judged(real.name, detector, method, len(track) - 1, len(track) - 1 - true, closed.distance_m)
     if prints is None:
-        end = float(np.hypot(*(track.position[-1] - track.position[0])[:2]))
-        return replace(found, return_m=end, return_pct=100 * end / distance)
-    ours, theirs = matched(track, prints)
-    off = np.linalg.norm(rigid_fit(ours, theirs) - theirs, axis=1)
-    return replace(found, rmse_m=float(np.sqrt(np.mean(off**2))), unmatched=len(prints) - len(theirs))
+        return replace(found, return_m=closed.return_error_m, return_pct=closed.return_error_pct)
+    laid = score_footprints(track, prints)
+    return replace(found, rmse_m=laid.footprint_rmse_m, unmatched=laid.footprints - laid.matched)
 
 
 def measure(reals: Sequence[Real]) -> tuple[list[Judged], dict[tuple[str, str], Track]]:

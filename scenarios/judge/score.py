@@ -18,6 +18,7 @@ from footfall.conventions import heading_of, wrap
 from footfall.errors import InputError
 from footfall.identity import WalkIdentity
 from footfall.pdr.track import Track
+from footfall.scenarios.judge.rigid import RigidMotion, rigid_fit, turn_between
 from footfall.simulate.walk import Walk
 
 TIME_SLACK = 0.1  # s; an IMU's clock may run off by this much over a walk
@@ -107,26 +108,22 @@ def compare(track: Track, walk: Walk, align: Align = "none") -> Comparison:
     heading = near + wrap(yaw - near)
     # From row to row the error changes by far less than half a turn, even where footfalls were missed.
     error = np.unwrap(track.heading - heading)
-    estimate, turn = _aligned(track.position[:, :2], truth, float(error[0]), align)
-    error = error + turn
+    estimate = track.position[:, :2]
+    if align != "none":
+        motion = _motion(estimate, truth, float(error[0]), align)
+        estimate, error = motion(estimate), error + motion.turn
     # Whole turns mean nothing at the start.
     return Comparison(track.t, estimate, truth, error - error[0] + wrap(error[0]))
 
 
-def _aligned(estimate: np.ndarray, truth: np.ndarray, off: float, align: Align) -> tuple[np.ndarray, float]:
-    """Positions (n, 2) laid on the truth, and by what turn (rad); `off` is the error of row 0's heading."""
-    if align == "none":
-        return estimate, 0.0
+def _motion(estimate: np.ndarray, truth: np.ndarray, off: float, align: Align) -> RigidMotion:
+    """What lays positions (n, 2) on the truth; `off` is the error of row 0's heading."""
     if align == "rigid":
-        here, there = estimate.mean(axis=0), truth.mean(axis=0)
-    else:
-        here, there = estimate[0], truth[0]
-    a, b = estimate - here, truth - there
-    # Least squares on the plane: the angle of the sum of conj(a) b.
-    across = np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-    turn = -off if align == "start" else math.atan2(across, np.sum(a * b))
-    c, s = math.cos(turn), math.sin(turn)
-    return there + a @ np.array([[c, s], [-s, c]]), turn
+        return rigid_fit(estimate, truth)
+    here, there = estimate[0], truth[0]
+    return RigidMotion(
+        here, there, -off if align == "start" else turn_between(estimate - here, truth - there)
+    )
 
 
 def score(track: Track, walk: Walk, align: Align = "none") -> Score:
