@@ -145,6 +145,28 @@ def _words(annotation: Any) -> str:
     return {float: "number", int: "whole number", str: "text", bool: "true or false"}.get(base, str(base))
 
 
+def there(table: Mapping[str, Any], address: str) -> bool:
+    """Whether a document has a place for a value: its lists have such elements; tables may be absent."""
+    places: list[Any] = [table]
+    for name, which in parse(address):
+        below: list[Any] = []
+        for place in places:
+            if not isinstance(place, Mapping):
+                continue  # text that stands for a table
+            value = place.get(name)
+            listed = isinstance(value, list) and any(isinstance(entry, Mapping) for entry in value)
+            if which is None and not listed:
+                below.append({} if value is None else value)
+            elif which is not None and isinstance(value, list):
+                key, _, text = which.partition("=")
+                tables = [entry for entry in value if isinstance(entry, Mapping)]
+                below += [entry for entry in tables if str(entry.get(key)) == text] if text else value
+        if not below:
+            return False
+        places = below
+    return True
+
+
 def edited(table: Mapping[str, Any], address: str, value: Any) -> dict[str, Any]:
     """A copy of `table` with `value` at `address`; tables on the way that are absent are made.
 

@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
-from footfall.addresses import edited, keys, parse, pattern
+from footfall.addresses import edited, keys, parse, pattern, there
 from footfall.errors import InputError
 from footfall.hdr.method import Method
 from footfall.hdr.methods import METHODS
@@ -43,7 +43,7 @@ _LATER = {
     "scenario.seeds.units": "record",
     "scenario.sensor.bias_time_s": "reckon",
 }
-_NO_PARAMETERS = {"scenario.description", "imu.name"}
+_NO_PARAMETERS = {"scenario.description", "scenario.sensor.imu", "imu.name"}
 _ENDINGS = {
     "_deg_s_g2": "deg/s/g2", "_deg_s_g": "deg/s/g", "_deg_s_k2": "deg/s/K2", "_deg_s_k": "deg/s/K",
     "_deg_rt_h": "deg/rt-h", "_deg_h_rt_h": "deg/h/rt-h", "_deg_h": "deg/h", "_deg_s": "deg/s", "_deg": "deg",
@@ -160,11 +160,10 @@ def with_values(base: Documents, values: Mapping[str, Any]) -> Documents:
     for address, value in values.items():
         area, _, path = address.partition(".")
         own = {method.name for method in base.methods}
-        if area in own:
-            # A method of this name may be renamed: `base.methods` decides.
-            base = replace(base, methods=tuple(_told(method, area, path, value) for method in base.methods))
-        elif area in _AREAS:
+        if area in _AREAS:  # first: the method pdr has no parameters of its own
             base = _AREAS[area](base, address, path, value)
+        elif area in own:
+            base = replace(base, methods=tuple(_told(method, area, path, value) for method in base.methods))
         elif area in METHODS:
             raise InputError(f"method {area!r} is not among {', '.join(sorted(own))}", address)
         else:
@@ -304,7 +303,7 @@ def parameters(base: Documents) -> Iterator[Parameter]:
     """Every address with what stands there now."""
     for key in keys(ScenarioFile):
         address = f"scenario.{key.address}"
-        if address in _NO_PARAMETERS:
+        if address in _NO_PARAMETERS or not there(base.scenario.table, key.address):
             continue
         stage = next((stage for head, stage in _LATER.items() if address.startswith(head)), "walk")
         now = _now(base.scenario.table, key.address, key.default)

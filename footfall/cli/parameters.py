@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 import typer
@@ -60,6 +61,9 @@ def parameters(
 
 
 def _plain(value: object) -> object:
+    """As JSON can hold it."""
+    if isinstance(value, float) and math.isinf(value):
+        return str(value)
     return list(value) if isinstance(value, tuple) else value
 
 
