@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -29,7 +30,7 @@ class Method:
     needs : "footfalls" of the `Reckoning` alone, or "samples"
     directions : which of its dominant directions can be told: "none" goes by none, "count" learns where they
         are, "all" takes their number and one of them
-    version : of the content of a method of others; "" for one built in
+    version : of the content of a method of others (`footfall.hdr.others`); "" for one built in
     use : text that it was found by, for a method of others
     """
 
@@ -78,9 +79,21 @@ class Method:
         """
         return replace(self, name=require_name(name))
 
+    def __reduce__(self) -> tuple[Callable[..., Method], tuple[str, bytes]]:
+        # What a file defines can be unpickled only after that file was loaded.
+        return _restored, (self.use, pickle.dumps(vars(self)))
+
 
 def require_name(name: str) -> str:
     """Refuse what is no name for files and addresses: letters, digits, - and _."""
     if not name or not name.replace("-", "a").replace("_", "a").isalnum():
         raise InputError(f"method name {name!r}: expected letters, digits, - and _")
     return name
+
+
+def _restored(use: str, content: bytes) -> Method:
+    if use:
+        from footfall.hdr.others import ready
+
+        ready(use)
+    return Method(**pickle.loads(content))

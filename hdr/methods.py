@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
 from footfall.errors import InputError
+from footfall.hdr.command import command_method
 from footfall.hdr.directions import DirectionParams
 from footfall.hdr.hde import Hde, Hde2010Params, HdeParams
 from footfall.hdr.hdr import HdrParams
 from footfall.hdr.ihde import Ihde, IhdeParams
 from footfall.hdr.ihde_plus import IhdePlus, IhdePlusParams
 from footfall.hdr.jimenez import FilterHdr, FilterHdrParams, Jimenez, JimenezParams
-from footfall.hdr.method import Method
+from footfall.hdr.method import Method, Needs
+from footfall.hdr.others import FORMS, adapted, entry_point_names, load
 from footfall.hdr.tracks import (
     UNTOLD,
     Reckoning,
@@ -205,19 +207,77 @@ METHODS: Mapping[str, Method] = MappingProxyType(
 )
 
 
-def find_method(use: str | Method | Callable[..., Track]) -> Method:
-    """A method by its name, or as it is.
+def find_method(
+    use: str | Method | Callable[..., Any] | None = None,
+    *,
+    name: str | None = None,
+    params: Any = None,
+    command: Sequence[str] | None = None,
+    format: str = "f64",
+    timeout_s: float = 60.0,
+    needs: Needs | None = None,
+) -> Method:
+    """A method, built in or of others.
+
+    Parameters
+    ----------
+    use : the name of one that is built in or of an entry point of the group `footfall.methods`;
+        `package.module:NAME` or `file.py:NAME`; a `Method`; or a callable, a dataclass with `__call__` or
+        its class (`footfall.hdr.others`)
+    name : what it is called; None for its own
+    params : values by name, or the dataclass itself, in place of its defaults
+    command, format, timeout_s : in place of `use`, a program (`footfall.hdr.command.Command`)
+    needs : what a callable is given first; None for its attribute `needs`, or "samples"
 
     Raises
     ------
     InputError
-        No method of that name.
+        No such method, one that cannot be loaded, or that is none; parameters that it refuses.
     """
-    if isinstance(use, Method):
-        return use
-    if not isinstance(use, str) or use not in METHODS:
-        raise InputError(f"method {use!r} is unknown, expected one of {', '.join(METHODS)}")
-    return METHODS[use]
+    if command is not None:
+        if use is not None:
+            raise InputError("a method has either a command or a use, not both", name)
+        found = command_method(command, name=name, format=format, timeout_s=timeout_s)
+    elif isinstance(use, str) and use in METHODS:
+        found = METHODS[use]
+    elif isinstance(use, str):
+        _require_findable(use)
+        found = adapted(load(use), use=use, name=name, needs=needs)
+    elif isinstance(use, Method):
+        found = use
+    else:
+        found = adapted(use, name=name, needs=needs)
+    found = found if name is None or found.name == name else found.renamed(name)
+    if params is None:
+        return found
+    return found.with_params(params) if isinstance(params, Mapping) else replace(found, params=params)
+
+
+def _require_findable(use: str) -> None:
+    """Refuse a text that means nothing, before anything is loaded."""
+    if ":" in use or use in entry_point_names():
+        return
+    if use.endswith(".py"):
+        raise InputError(f"say which of its names: {use}:NAME", use)
+    known = ", ".join([*METHODS, *entry_point_names()])
+    raise InputError(f"method {use!r} is unknown, expected one of {known}, {FORMS}")
+
+
+def parsed_methods(text: str) -> tuple[Method, ...]:
+    """Methods of a command line: uses separated by commas, with NAME= before one that is called otherwise.
+
+    Raises
+    ------
+    InputError
+        What `find_method` refuses, or two different methods of one name.
+    """
+    found: dict[str, Method] = {}
+    for entry in (part.strip() for part in text.split(",")):
+        name, sign, use = entry.partition("=")
+        method = find_method(use.strip(), name=name.strip()) if sign else find_method(entry)
+        if found.setdefault(method.name, method) != method:
+            raise InputError(f"method {method.name!r} is given twice: give each a name, NAME={entry}")
+    return tuple(found.values())
 
 
 def require_methods(names: Iterable[str]) -> None:
