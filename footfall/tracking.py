@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from footfall.errors import InputError
 from footfall.formats.condition import Findings
 from footfall.formats.reader import WHOLE_ROWS, Blocks, open_source, read_source
-from footfall.hdr.methods import METHODS, require_methods, told_directions
+from footfall.hdr.method import Method
+from footfall.hdr.methods import find_method, told_directions
 from footfall.hdr.streamed import StreamedReckoning
 from footfall.hdr.tracks import Reckoning, told
 from footfall.pdr.detectors import require_detector
+from footfall.pdr.filter.ins import FilterSettings
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.reckoning import PdrParams, StartPose
 from footfall.pdr.rest import still_time
 from footfall.pdr.stream import dead_reckon_blocks
 from footfall.pdr.track import Track
+from footfall.settings import changed, did_you_mean
 
 
 class Tracked(NamedTuple):
@@ -31,7 +34,7 @@ class Tracked(NamedTuple):
 
 def track(
     path: str | os.PathLike[str],
-    method: str,
+    method: str | Method | Callable[..., Any],
     *,
     format: str = "auto",
     sizes: Mapping[str, float] | None = None,
@@ -42,33 +45,35 @@ def track(
     heading: float | None = None,
     directions: int | None = None,
     reference: float | None = None,
+    values: Mapping[str, Any] | None = None,
 ) -> Tracked:
     """Navigate a recording of any known format.
 
     Parameters
     ----------
-    method, detector : names in `METHODS` and `DETECTORS`
+    method : as `footfall.hdr.methods.find_method` takes it: a name, or anybody's own
+    detector : name in `DETECTORS`
     format, sizes, rate_hz : as of `footfall.formats.read`
     bias_s : s, T_bias; None for as long as the recording rests, at most 25
     start : where the IMU rests before the walk; None for what the recording says (`StartPose.of`)
     heading : rad, at the start, in place of the start's own
     directions, reference : dominant directions, for methods that go by them: how many (None for 4), and one
         of them (rad; None for that in which the walk sets out)
+    values : address -> value of `pdr`, `filter` and the method's own parameters, as `--set` takes them
 
     Raises
     ------
     InputError
-        Directions for a method that goes by none; what reading and navigating refuse; or a method that needs
-        all samples, and too many of them.
+        No such method or address, or a value that it refuses; directions for a method that goes by none; what
+        reading and navigating refuse; or a method that needs all samples, and too many of them.
     """
-    require_methods([method])
-    params = PdrParams(detector=require_detector(detector))
+    chosen, params, guided = _settled(find_method(method), detector, values or {})
     params = params if bias_s is None else replace(params, bias_s=bias_s)
-    rest = still_time if bias_s is None else None
+    rest = still_time if bias_s is None and "pdr.bias_s" not in (values or {}) else None
     source = open_source(path, format, sizes, rate_hz)
     start = start or StartPose.of(source.meta)
     start = start if heading is None else replace(start, heading=heading)
-    counted = told_directions(method, directions, reference)
+    counted = told_directions(chosen, directions, reference)
     used = params.bias_s
 
     def run_through() -> Footfalls:
@@ -82,12 +87,34 @@ def track(
             if rest is not None:
                 used = rest(recording, used)
             params = replace(params, bias_s=used)
-            found = METHODS[method].track(Reckoning(recording, start, params, counted))
+            found = chosen.track(Reckoning(recording, start, params, counted, guided))
         else:
             blocks = Blocks(source)
-            found = METHODS[method].track(StreamedReckoning(run_through, start, counted))
+            found = chosen.track(StreamedReckoning(run_through, start, counted))
             findings = blocks.findings
     except InputError as error:
         raise error.about(source.path, "recording") from None
     origin = {**source.meta, "read": findings.as_dict()}
     return Tracked(told(found, origin, replace(params, bias_s=used), start), findings, used)
+
+
+def _settled(
+    method: Method, detector: str, values: Mapping[str, Any]
+) -> tuple[Method, PdrParams, FilterSettings]:
+    """The method, dead reckoning's settings and the filter's, with values by address."""
+    areas: dict[str, dict[str, Any]] = {"pdr": {}, "filter": {}, method.name: {}}
+    for address, value in values.items():
+        area, _, path = address.partition(".")
+        if area not in areas:
+            raise InputError(f"unknown area{did_you_mean(area, areas)}", address)
+        areas[area][path] = value
+    params = PdrParams(detector=require_detector(str(areas["pdr"].pop("detector", detector))))
+    area = "pdr"
+    try:
+        params = changed(params, areas[area])
+        area = "filter"
+        guided = changed(FilterSettings(), areas[area])
+        area = method.name
+        return method.with_params(areas[area]) if areas[area] else method, params, guided
+    except InputError as error:
+        raise InputError(f"{area}.{error}") from None

@@ -263,23 +263,6 @@ def _require_findable(use: str) -> None:
     raise InputError(f"method {use!r} is unknown, expected one of {known}, {FORMS}")
 
 
-def parsed_methods(text: str) -> tuple[Method, ...]:
-    """Methods of a command line: uses separated by commas, with NAME= before one that is called otherwise.
-
-    Raises
-    ------
-    InputError
-        What `find_method` refuses, or two different methods of one name.
-    """
-    found: dict[str, Method] = {}
-    for entry in (part.strip() for part in text.split(",")):
-        name, sign, use = entry.partition("=")
-        method = find_method(use.strip(), name=name.strip()) if sign else find_method(entry)
-        if found.setdefault(method.name, method) != method:
-            raise InputError(f"method {method.name!r} is given twice: give each a name, NAME={entry}")
-    return tuple(found.values())
-
-
 def require_methods(names: Iterable[str]) -> None:
     """Raise InputError when a method of any of these names does not exist."""
     for name in names:

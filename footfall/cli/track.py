@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from footfall.cli.options import FormatOption, OutputOption, RateOption, UnitOption
+from footfall.cli.options import FormatOption, OutputOption, RateOption, SetOption, UnitOption
 from footfall.cli.terminal import ERR, blaming, finite, require_output, say
 
 
@@ -21,7 +21,13 @@ def track(
         ),
     ],
     output: OutputOption,
-    method: Annotated[str, typer.Option(help="How to navigate (see `footfall list`).")] = "hdr",
+    method: Annotated[
+        str,
+        typer.Option(
+            help="How to navigate: a name (see `footfall list`), or your own as FILE.py:FUNCTION "
+            "(docs/methods.md)."
+        ),
+    ] = "hdr",
     detector: Annotated[
         str, typer.Option(help="What tells that the foot is at rest (see `footfall list`).")
     ] = "threshold",
@@ -59,6 +65,7 @@ def track(
             show_default=False,
         ),
     ] = None,
+    settings: SetOption = None,
     format: FormatOption = "auto",
     unit: UnitOption = None,
     rate: RateOption = None,
@@ -76,6 +83,11 @@ def track(
     if bias_time is not None:
         with blaming("--bias-time", "pdr"):
             PdrParams(bias_s=bias_time)
+    values = {}
+    if settings:
+        from footfall.scenarios.parameters import parsed
+
+        values = parsed(settings)
     with ERR.status("navigating"):
         result = navigate(
             recording,
@@ -88,10 +100,11 @@ def track(
             heading=None if heading is None else math.radians(heading),
             directions=directions,
             reference=None if reference is None else math.radians(reference),
+            values=values,
         )
         write_track(result.track, output)
     for sentence in result.findings.sentences():
         say(f"{recording}: {sentence}")
-    if bias_time is None and result.bias_s < PdrParams().bias_s:
+    if bias_time is None and "pdr.bias_s" not in values and result.bias_s < PdrParams().bias_s:
         say(f"{recording}: static bias averaged over the {result.bias_s:g} s that it rests")
     say(f"{len(result.track)} footfalls: {output}")

@@ -14,7 +14,7 @@ import pytest
 from footfall.errors import InputError
 from footfall.hdr import others
 from footfall.hdr.hdr import HdrParams
-from footfall.hdr.methods import METHODS, Reckoning, find_method, parsed_methods, tracks
+from footfall.hdr.methods import METHODS, Reckoning, find_method, tracks
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.reckoning import PdrParams, StartPose, dead_reckon
 from footfall.pdr.track import Track
@@ -282,16 +282,6 @@ def test_two_packages_with_one_name_are_told(installed):
     installed(twice=["one:A", "two:B"])
     with pytest.raises(InputError, match=r"^twice: several packages have it: one:A, two:B; say which$"):
         find_method("twice")
-
-
-def test_methods_of_a_command_line(nav):
-    use = nav(GOOD)
-    names = [method.name for method in parsed_methods(f"pdr, hdr,mine={use},{use},pdr")]
-    assert names == ["pdr", "hdr", "mine", "Mine"]
-    with pytest.raises(InputError, match=r"'hdr' is given twice: give each a name, NAME=hdr=pdr"):
-        parsed_methods("hdr,hdr=pdr")
-    with pytest.raises(InputError, match=r"method name 'a\.b'"):
-        parsed_methods(f"a.b={use}")
 
 
 @pytest.mark.parametrize(
