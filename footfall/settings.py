@@ -132,7 +132,7 @@ def require(name: str, params: Any) -> None:
             bounds = str(limits) or "finite"
             if bounds in ("positive", "finite"):
                 bounds = f"{bounds} numbers" if isinstance(value, tuple) else f"a {bounds} number"
-            raise InputError(f"{name}: {item.name} = {shown}, expected {bounds}")
+            raise InputError(f"{item.name} = {shown}, expected {bounds}", name)
 
 
 def leaves(params: Any) -> Iterator[Leaf]:
