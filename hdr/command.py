@@ -22,7 +22,7 @@ import pyarrow.csv as pa_csv
 
 from footfall.errors import InputError
 from footfall.hdr.method import Method, require_name
-from footfall.hdr.others import require_sound
+from footfall.hdr.sound import require_sound
 from footfall.hdr.tracks import Reckoning
 from footfall.identity import plain
 from footfall.pdr.track import Track, read_track

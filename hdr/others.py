@@ -29,6 +29,7 @@ import numpy as np
 
 from footfall.errors import InputError
 from footfall.hdr.method import Method, Needs, require_name
+from footfall.hdr.sound import article, require_sound
 from footfall.hdr.tracks import Reckoning
 from footfall.pdr.track import Track
 from footfall.settings import did_you_mean
@@ -173,7 +174,7 @@ def adapted(found: Any, *, use: str = "", name: str | None = None, needs: Needs 
         except Exception as error:
             raise InputError(f"cannot be made without arguments: {_told(error)}", culprit) from None
     if not callable(found):
-        raise InputError(f"is {_a(found)}, expected a callable {_SIGNATURES}", culprit)
+        raise InputError(f"is {article(type(found).__name__)}, expected a callable {_SIGNATURES}", culprit)
     wants: Any = needs or getattr(found, "needs", "samples")
     if wants not in get_args(Needs):
         raise InputError(f'needs = {wants!r}, expected "footfalls" or "samples"', culprit)
@@ -205,6 +206,7 @@ class Foreign:
     takes_params : whether it is given them as well
     needs : what it is given first
     file : that it is defined in, for messages
+    judged : whether the track is judged here (`footfall.hdr.check` does it by itself)
     """
 
     culprit: str
@@ -212,6 +214,7 @@ class Foreign:
     takes_params: bool
     needs: Needs
     file: str
+    judged: bool = True
 
     def __call__(self, reckoning: Reckoning, params: Any) -> Track:
         """The track.
@@ -232,61 +235,22 @@ class Foreign:
             raise
         except Exception as error:
             raise InputError(_told(error, self.file), self.culprit) from error
-        require_sound(made, given.t, self.culprit)
+        if self.judged:
+            require_sound(made, given.t, self.culprit)
         return made
 
 
 def guarded(value: Held) -> Held:
-    """The same dataclass with arrays that cannot be written to."""
+    """The same dataclass with arrays that cannot be written to, and mappings of its own."""
     held = copy.copy(value)
-    for name, array in vars(value).items():
-        if isinstance(array, np.ndarray):
-            view = array.view()
+    for name, part in vars(value).items():
+        if isinstance(part, np.ndarray):
+            view = part.view()
             view.flags.writeable = False
             object.__setattr__(held, name, view)
+        elif isinstance(part, Mapping):
+            object.__setattr__(held, name, copy.deepcopy(dict(part)))
     return held
-
-
-def require_sound(track: Any, t: np.ndarray, culprit: str) -> None:
-    """Refuse what is no track of a recording with these stamps (n,) s.
-
-    Raises
-    ------
-    InputError
-        Not a `Track`; arrays of other shapes; not finite; stamps that do not increase or lie outside; a
-        heading that jumps, as one does that is not unwrapped.
-    """
-
-    def refuse(sentence: str) -> None:
-        raise InputError(f"returned {sentence}", culprit)
-
-    if not isinstance(track, Track):
-        refuse(f"{_a(track)}, expected a Track")
-    n = len(track.t)
-    shapes = {"t": (n,), "position": (n, 3), "heading": (n,)} | dict.fromkeys(track.evidence, (n,))
-    values = {"t": track.t, "position": track.position, "heading": track.heading, **track.evidence}
-    for name, shape in shapes.items():
-        array = np.asarray(values[name])
-        if array.shape != shape or array.dtype.kind not in "fiub":
-            refuse(f"a track whose {name} is {array.dtype} of shape {array.shape}, expected numbers {shape}")
-        if name not in track.evidence and not np.isfinite(array).all():
-            row = int(np.argwhere(~np.isfinite(array))[0][0])
-            refuse(f"a track whose {name} is not finite at row {row}")
-    if n < 2:
-        refuse(f"a track of {n} rows, expected at least 2")
-    if (np.diff(track.t) <= 0).any():
-        row = int(np.argmax(np.diff(track.t) <= 0)) + 1
-        refuse(f"a track whose t does not increase at row {row} (t = {track.t[row]:.6g} s)")
-    slack = float(np.median(np.diff(t)))
-    if track.t[0] < t[0] - slack or track.t[-1] > t[-1] + slack:
-        refuse(
-            f"a track from t = {track.t[0]:.6g} to {track.t[-1]:.6g} s of a recording from {t[0]:.6g} "
-            f"to {t[-1]:.6g} s"
-        )
-    jump = np.abs(np.diff(track.heading))
-    if (jump > 1.5 * np.pi).any():  # less is a turn on the spot
-        row = int(np.argmax(jump)) + 1
-        refuse(f"a heading that jumps by {np.degrees(jump[row - 1]):.0f} deg at row {row}: unwrap it")
 
 
 def content_version(found: Any) -> str:
@@ -364,8 +328,3 @@ def _as_name(own: Any, use: str, found: Any) -> str:
     """What a method calls itself, or else its text's last part, or the callable's name."""
     text = own if isinstance(own, str) and own else use.rpartition(":")[2] or _called(found)
     return require_name(re.sub(r"[^0-9A-Za-z_-]+", "-", text.rpartition(".")[2]).strip("-") or "method")
-
-
-def _a(found: Any) -> str:
-    kind = type(found).__name__
-    return "None" if found is None else f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
