@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, is_dataclass
+from dataclasses import asdict, dataclass, field, fields, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,7 @@ class WalkIdentity:
 
     Attributes
     ----------
-    scenario : its name
+    scenario : its name, which makes none: a copy of a scenario is the same walk
     scenario_digest : of the whole plan: path geometry, ground, body, mount, gait, stops, paces, pushes, seed
     seed : of the walk
     subject : name of the person
@@ -31,7 +31,7 @@ class WalkIdentity:
     code : digest of what moves the walker
     """
 
-    scenario: str
+    scenario: str = field(compare=False)
     scenario_digest: str
     seed: int
     subject: str
@@ -45,16 +45,16 @@ class WalkIdentity:
 
     @property
     def digest(self) -> str:
-        """Of all of it."""
-        return digest_of(self)
+        """Of all that makes it differ."""
+        return digest_of({item.name: getattr(self, item.name) for item in fields(self) if item.compare})
 
     @classmethod
     def of(cls, meta: Mapping[str, Any]) -> WalkIdentity | None:
         """The identity that a walk's metadata hold, or a recording's or track's of theirs; None without."""
         told = meta.get(WALK, meta)
-        if not isinstance(told, Mapping) or any(field.name not in told for field in fields(cls)):
+        if not isinstance(told, Mapping) or any(item.name not in told for item in fields(cls)):
             return None
-        return cls(**{field.name: told[field.name] for field in fields(cls)})
+        return cls(**{item.name: told[item.name] for item in fields(cls)})
 
     def __str__(self) -> str:
         mount = self.mount.get("name", "unknown")

@@ -92,8 +92,7 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
         table = pa_csv.read_csv(source) if kind == "CSV" else pq.read_table(source, partitioning=None)
         names = table.column_names
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        reason = str(error).splitlines()[0]
-        raise InputError(f"not a readable {kind} file ({reason})", source) from None
+        raise _unreadable(source, kind, error) from None
     columns: dict[str, np.ndarray] = {}
     for name, column in zip(names, table.columns, strict=True):
         holds = column.type
@@ -105,12 +104,33 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
         # compiled kernels would have to be compiled once more.
         values = column.to_numpy(zero_copy_only=False)
         columns[name] = np.array(values, dtype=float if column.null_count else None)
-    return columns, _meta(source, table)
+    return columns, _meta(source, table.schema)
 
 
-def _meta(source: Path, table: pa.Table) -> dict[str, Any]:
+def read_meta(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """The provenance in a Parquet file, without its columns; empty for a file that Footfall did not write.
+
+    Raises
+    ------
+    InputError
+        The file is absent or unreadable.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise InputError("no such file", source)
     try:
-        meta = json.loads((table.schema.metadata or {}).get(META_KEY, b"{}"))
+        return _meta(source, pq.read_schema(source))
+    except (pa.ArrowException, OSError) as error:
+        raise _unreadable(source, "Parquet", error) from None
+
+
+def _unreadable(source: Path, kind: str, error: Exception) -> InputError:
+    return InputError(f"not a readable {kind} file ({str(error).splitlines()[0]})", source)
+
+
+def _meta(source: Path, schema: pa.Schema) -> dict[str, Any]:
+    try:
+        meta = json.loads((schema.metadata or {}).get(META_KEY, b"{}"))
     except ValueError:
         meta = None
     if not isinstance(meta, dict):

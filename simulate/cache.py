@@ -1,8 +1,12 @@
-"""Walks by content: the same plan, weights, code and versions are walked once."""
+"""Walks by content: the same plan, weights, code and versions are walked once, by one process."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import platformdirs
@@ -10,10 +14,34 @@ import platformdirs
 from footfall.errors import InputError
 from footfall.identity import digest_of
 from footfall.models.policy import Policy, stock_policy
-from footfall.simulate.identity import source_digest
 from footfall.simulate.plan import Plan, versions
-from footfall.simulate.walk import Walk, read_walk, write_walk
+from footfall.simulate.walk import Walk, footfalls_path, read_walk, write_walk
 from footfall.simulate.walking import walk
+from footfall.sources import stage_digest
+from footfall.tables import read_meta
+
+_POLL_S = 0.2  # between looks at a walk that another process is walking
+_ABANDONED_S = 3600.0  # after which a file that is being written is not any more
+
+
+@dataclass(frozen=True)
+class CachedWalk:
+    """A walk in the cache.
+
+    Attributes
+    ----------
+    file : its walk.parquet, with the footfalls beside it
+    scenario, subject : names; seed : of the walk; None where the file is damaged
+    size : bytes of both files
+    used : s since 1970, when it was last read or written
+    """
+
+    file: Path
+    scenario: str | None
+    subject: str | None
+    seed: int | None
+    size: int
+    used: float
 
 
 def cache_folder() -> Path:
@@ -22,8 +50,8 @@ def cache_folder() -> Path:
 
 
 def plan_key(plan: Plan, policy: Policy) -> str:
-    """Hash of everything that determines the walk."""
-    return digest_of(versions(), source_digest(), policy.digest, plan)[:32]
+    """Hash of everything that determines the walk. A plan's name does not."""
+    return digest_of(versions(), stage_digest("walk"), policy.digest, plan.digest)[:32]
 
 
 def cached_walk(
@@ -32,23 +60,127 @@ def cached_walk(
     folder: Path | None = None,
     policy: Policy | None = None,
     on_progress: Callable[[float], None] | None = None,
+    on_wait: Callable[[], None] | None = None,
 ) -> Walk:
     """`walk(plan)`, from the cache where it has been walked before.
 
-    A damaged cache file is walked again.
+    A damaged cache file is walked again. What another process is walking is waited for and read.
 
     Parameters
     ----------
     folder : of the cache; the user's when None
+    on_progress : as of `walk`
+    on_wait : called once where another process is walking this plan
+
+    Raises
+    ------
+    InputError
+        As `walk`; or the folder cannot be written, which is told before walking.
     """
     policy = policy or stock_policy()
     path = (folder or cache_folder()) / f"{plan_key(plan, policy)}.parquet"
-    if path.exists():
+    found = _read(path)
+    if found is None:
+        with _alone(path, on_wait):
+            found = _read(path)
+            if found is None:
+                found = walk(plan, policy, on_progress)
+                write_walk(found, path)
+    # Another scenario of the same content may have walked it.
+    return replace(found, meta={**found.meta, "scenario": plan.name})
+
+
+def cached_walks(folder: Path | None = None) -> list[CachedWalk]:
+    """What is in the cache, the last used first."""
+    files = (folder or cache_folder()).glob("*.parquet")
+    walks = [_entry(file) for file in files if not file.name.endswith(".footfalls.parquet")]
+    return sorted((one for one in walks if one is not None), key=lambda one: (-one.used, one.file.name))
+
+
+def prune(keep: int, folder: Path | None = None) -> list[CachedWalk]:
+    """Remove the walks that were not used for longest, until the others fit into `keep` bytes.
+
+    Returns
+    -------
+    What was removed.
+    """
+    _sweep(folder or cache_folder())
+    removed: list[CachedWalk] = []
+    kept = 0
+    for one in cached_walks(folder):
+        if not removed and kept + one.size <= keep:
+            kept += one.size
+        else:
+            _remove(one.file)
+            removed.append(one)
+    return removed
+
+
+def _read(path: Path) -> Walk | None:
+    """The walk in a file of the cache, if it is there and whole."""
+    try:
+        found = read_walk(path)
+    except InputError:
+        return None
+    with suppress(OSError):  # a cache that is only read from
+        os.utime(path)
+    return found
+
+
+@contextmanager
+def _alone(path: Path, on_wait: Callable[[], None] | None) -> Iterator[None]:
+    """No other process is in here for this file at the same time; the system frees what a dead one held."""
+    from filelock import FileLock, Timeout
+
+    lock = FileLock(path.with_suffix(".lock"))
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         try:
-            return read_walk(path)
-        except InputError:
-            path.unlink(missing_ok=True)
-    result = walk(plan, policy, on_progress)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_walk(result, path)
-    return result
+            lock.acquire(timeout=0)
+        except Timeout:
+            if on_wait is not None:
+                on_wait()
+            lock.acquire(poll_interval=_POLL_S)
+    except OSError as error:
+        raise InputError(f"walks cannot be kept there ({error.strerror or error})", path.parent) from None
+    try:
+        yield
+    finally:
+        # Whoever waits for this file's lock finds the walk; whoever comes later needs none.
+        with suppress(OSError):
+            path.with_suffix(".lock").unlink()
+        lock.release()
+
+
+def _entry(file: Path) -> CachedWalk | None:
+    """What a file of the cache is; None where it has just been removed."""
+    try:
+        used, size = file.stat().st_mtime, file.stat().st_size
+    except OSError:
+        return None
+    with suppress(OSError):
+        size += footfalls_path(file).stat().st_size
+    try:
+        meta = read_meta(file)
+    except InputError:
+        meta = {}
+    return CachedWalk(file, meta.get("scenario"), meta.get("subject"), meta.get("seed"), size, used)
+
+
+def _sweep(folder: Path) -> None:
+    """Remove what processes that were killed have left: locks that nobody holds, and files half written."""
+    from filelock import FileLock, Timeout
+
+    for file in folder.glob("*.lock"):
+        with suppress(Timeout, OSError), FileLock(file).acquire(timeout=0):
+            file.unlink()
+    for file in folder.glob(".*.tmp"):
+        with suppress(OSError):
+            if time.time() - file.stat().st_mtime > _ABANDONED_S:
+                file.unlink()
+
+
+def _remove(file: Path) -> None:
+    """The walk first: footfalls without one are found by nobody."""
+    for part in (file, footfalls_path(file)):
+        part.unlink(missing_ok=True)

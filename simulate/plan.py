@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import platform
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from importlib.metadata import version
 
 import footfall
+from footfall.identity import digest_of
 from footfall.models.body import Ground, Mount
 from footfall.models.route import Route
 from footfall.models.subject import Subject
@@ -88,6 +90,11 @@ class Plan:
     calibration_s: float = 30.0
     rate_hz: float = 200.0
     seed: int = 1
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of all of it but the name: a copy of a scenario is the same walk."""
+        return digest_of(replace(self, name=""))
 
 
 def shrunk(plan: Plan) -> Plan:

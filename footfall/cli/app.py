@@ -15,6 +15,7 @@ import typer
 
 from footfall import __version__
 from footfall.cli.allan import allan
+from footfall.cli.cache import cache
 from footfall.cli.export import export
 from footfall.cli.list import list_
 from footfall.cli.parameters import parameters
@@ -55,6 +56,7 @@ def _main(
 
 for command in (list_, parameters, run, walk, render, record, track, score, export, allan):
     app.command(command.__name__.rstrip("_"))(command)
+app.add_typer(cache, name="cache")
 
 
 def main(arguments: list[str] | None = None) -> int:

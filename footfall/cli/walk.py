@@ -87,6 +87,12 @@ def walk(
         def walked(metres: float) -> None:
             progress.update(bar, completed=metres)
 
-        truth = walk_anew(plan, on_progress=walked) if no_cache else cached_walk(plan, on_progress=walked)
+        def waiting() -> None:
+            progress.update(bar, description="another process is walking this; waiting")
+
+        if no_cache:
+            truth = walk_anew(plan, on_progress=walked)
+        else:
+            truth = cached_walk(plan, on_progress=walked, on_wait=waiting)
     write_walk(truth, output)
     say(f"{len(truth.footfalls.t)} footfalls in {truth.t[-1]:.0f} s: {output}")

@@ -48,7 +48,6 @@ OTHERS = {
     "calibration": {"calibration_s": 27.0},
     "push": {"disturbance": Disturbance(1.0)},
     "rate": {"rate_hz": 100.0},
-    "name": {"name": "long"},
 }
 
 
@@ -60,11 +59,22 @@ def test_no_two_plans_are_the_same_walk(short_plan):
         {one.scenario_digest for one in identities},
         {one.digest for one in identities},
         {str(one) for one in identities},
+        {plan.digest for plan in plans},
         {plan_key(plan, policy) for plan in plans},
     ):
         assert len(made) == len(plans)
     assert walk_identity(replace(short_plan), policy) == identities[0]
     assert walk_identity(short_plan, replace(policy, digest="other")) != identities[0]
+
+
+def test_a_copy_of_a_scenario_is_the_same_walk(short_plan, short_walk, recording):
+    policy, copy = stock_policy(), replace(short_plan, name="copy")
+    ours, theirs = walk_identity(short_plan, policy), walk_identity(copy, policy)
+    assert (theirs, theirs.digest, theirs.scenario) == (ours, ours.digest, "copy")
+    assert plan_key(copy, policy) == plan_key(short_plan, policy)
+    track = tracks(Reckoning(recording, start_pose(short_walk)), ["pdr"])["pdr"]
+    named = replace(short_walk, meta=short_walk.meta | theirs.as_dict())
+    assert score(track, named) == score(track, short_walk)
 
 
 def test_mounts_have_their_names():

@@ -10,10 +10,9 @@ from footfall.errors import InputError
 from footfall.models.body import MOUNTS, Ground
 from footfall.models.policy import Policy, stock_policy
 from footfall.models.route import Route
-from footfall.models.subject import SUBJECTS, Subject
+from footfall.models.subject import Subject
 from footfall.pdr.strapdown import integrate
 from footfall.runs import runs
-from footfall.simulate.cache import cached_walk, plan_key
 from footfall.simulate.episode import STAND_S, Episode, FallError
 from footfall.simulate.plan import Disturbance, Gait, Pace, Plan, Stop
 from footfall.simulate.walk import Walk, footfalls_path, read_walk, write_walk
@@ -241,42 +240,3 @@ def test_walks_survive_their_files(tmp_path, short_walk: Walk) -> None:  # type:
     footfalls_path(path).unlink()
     with pytest.raises(InputError, match=r"walk\.footfalls\.parquet: no such file"):
         read_walk(path)
-
-
-def test_walks_are_cached_by_content(tmp_path, monkeypatch, short_plan: Plan, short_walk: Walk) -> None:  # type: ignore[no-untyped-def]
-    monkeypatch.setattr("footfall.simulate.cache.cache_folder", lambda: tmp_path)
-    calls = []
-    monkeypatch.setattr("footfall.simulate.cache.walk", lambda *_: calls.append(1) or short_walk)
-    cached_walk(short_plan)
-    found = cached_walk(short_plan)
-    assert len(calls) == 1
-    np.testing.assert_array_equal(found.gyro, short_walk.gyro)
-    cached_walk(replace(short_plan, gait=replace(short_plan.gait, pace_m_s=1.2)))
-    assert len(calls) == 2
-    cached_walk(short_plan, use_cache=False)
-    assert len(calls) == 3
-    # A damaged file is walked again, not believed.
-    (tmp_path / f"{plan_key(short_plan, stock_policy())}.parquet").write_bytes(b"PAR1 torn")
-    cached_walk(short_plan)
-    assert len(calls) == 4
-    assert not list(tmp_path.glob(".*tmp"))
-
-
-def test_the_key_knows_everything_that_matters(short_plan: Plan) -> None:
-    policy = stock_policy()
-    keys = {
-        plan_key(plan, policy)
-        for plan in (
-            short_plan,
-            replace(short_plan, seed=6),
-            replace(short_plan, rate_hz=100.0),
-            replace(short_plan, mount=MOUNTS["heel"]),
-            replace(short_plan, gait=replace(short_plan.gait, wander_m=0.11)),
-            replace(short_plan, gait=replace(short_plan.gait, placement_variability=0.9)),
-            replace(short_plan, gait=replace(short_plan.gait, cadence_variability=0.9)),
-            replace(short_plan, gait=replace(short_plan.gait, toe_out_variability=0.9)),
-            replace(short_plan, subject=SUBJECTS["taller"]),
-            replace(short_plan, route=replace(short_plan.route, x=short_plan.route.x + 1e-9)),
-        )
-    }
-    assert len(keys) == 10

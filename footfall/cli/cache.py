@@ -1,0 +1,108 @@
+"""`footfall cache`: which walks are kept, and how much of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from footfall.cli.options import JsonOption
+from footfall.cli.terminal import OUT, print_json, say
+from footfall.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from footfall.simulate.cache import CachedWalk
+
+cache = typer.Typer(help="List the walks that are kept, or remove those that were not used for longest.")
+
+
+@cache.callback(invoke_without_command=True)
+def _cache(context: typer.Context) -> None:
+    if context.invoked_subcommand is None:
+        list_()
+
+
+@cache.command("list")
+def list_(as_json: JsonOption = False) -> None:
+    """Show what is kept: size, scenario, seed and last use of each walk."""
+    from footfall.scenarios.report.tables import new_table
+    from footfall.simulate.cache import cache_folder, cached_walks
+
+    walks = cached_walks()
+    if as_json:
+        print_json({"folder": str(cache_folder()), "bytes": _total(walks), "walks": _rows(walks)})
+        return
+    table = new_table("scenario", "subject", "seed", "size\nMB", "last used", "file", left=2)
+    for one in walks:
+        known = one.scenario is not None
+        table.add_row(
+            one.scenario or "damaged",
+            one.subject or "",
+            f"{one.seed}" if known else "",
+            f"{one.size / 1e6:.1f}",
+            _when(one).replace("T", " ")[:16],
+            one.file.stem[:8],
+        )
+    if walks:
+        OUT.print(table)
+    count = "1 walk" if len(walks) == 1 else f"{len(walks)} walks"
+    say(f"{count}, {_megabytes(walks)} in {cache_folder()}")
+
+
+@cache.command()
+def prune(
+    keep: Annotated[str, typer.Option(metavar="SIZE", help="How much stays, such as 500MB or 10GB.")],
+    as_json: JsonOption = False,
+) -> None:
+    """Remove the walks that were not used for longest, until the others fit into --keep."""
+    from footfall.simulate.cache import cached_walks
+    from footfall.simulate.cache import prune as remove
+
+    removed = remove(_bytes(keep))
+    left = cached_walks()
+    if as_json:
+        print_json({"removed": _rows(removed), "bytes_removed": _total(removed), "bytes": _total(left)})
+        return
+    say(f"{len(removed)} removed, {_megabytes(removed)}; {len(left)} left, {_megabytes(left)}")
+
+
+def _bytes(text: str) -> int:
+    from pydantic import ByteSize, TypeAdapter, ValidationError
+
+    try:
+        size = int(TypeAdapter(ByteSize).validate_python(text))
+    except ValidationError:
+        size = -1
+    if size < 0:
+        raise InputError(f"--keep {text!r}: expected a size such as 500MB or 10GB")
+    return size
+
+
+def _rows(walks: Sequence[CachedWalk]) -> list[dict[str, object]]:
+    return [
+        {
+            "file": str(one.file),
+            "scenario": one.scenario,
+            "subject": one.subject,
+            "seed": one.seed,
+            "bytes": one.size,
+            "last_used": _when(one),
+        }
+        for one in walks
+    ]
+
+
+def _when(one: CachedWalk) -> str:
+    from datetime import datetime
+
+    return datetime.fromtimestamp(one.used).astimezone().isoformat(timespec="seconds")
+
+
+def _total(walks: Sequence[CachedWalk]) -> int:
+    return sum(one.size for one in walks)
+
+
+def _megabytes(walks: Sequence[CachedWalk]) -> str:
+    return f"{_total(walks) / 1e6:,.0f} MB"
