@@ -54,7 +54,12 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def write_table(
-    path: str | os.PathLike[str], columns: Columns, units: Mapping[str, str], meta: Mapping[str, Any]
+    path: str | os.PathLike[str],
+    columns: Columns,
+    units: Mapping[str, str],
+    meta: Mapping[str, Any],
+    *,
+    smooth: bool = False,
 ) -> None:
     """Write equally long one-dimensional columns to Parquet.
 
@@ -63,11 +68,21 @@ def write_table(
     columns : name -> (n,) array
     units : name -> unit ("" for none), stored in the schema
     meta : JSON-serialisable provenance (versions, seed, scenario)
+    smooth : floats hardly ever repeat, and neighbours are alike: each byte of them is stored as a column of
+        its own. What is quantised, as a recording is, has a dictionary of its values, which is smaller then.
     """
     schema_meta = {UNITS_KEY: json.dumps(dict(units)), META_KEY: json.dumps(dict(meta))}
     table = pa.table({name: pa.array(np.ascontiguousarray(values)) for name, values in columns.items()})
+    split = [name for name, values in columns.items() if smooth and values.dtype.kind == "f"]
     with replacing(path) as temporary:
-        pq.write_table(table.replace_schema_metadata(schema_meta), temporary, compression="zstd")
+        pq.write_table(
+            table.replace_schema_metadata(schema_meta),
+            temporary,
+            compression="zstd",
+            compression_level=1,
+            use_dictionary=[name for name in columns if name not in split],
+            use_byte_stream_split=split or False,
+        )
 
 
 def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:

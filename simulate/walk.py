@@ -126,7 +126,7 @@ def write_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
     columns = {"t": walk.t} | dict(zip(POSE, pose.T, strict=True))
     columns |= dict(zip(GYRO, walk.gyro.T, strict=True)) | dict(zip(ACCEL, walk.accel.T, strict=True))
     columns |= {"contact": walk.contact, "stance": walk.stance}
-    write_table(path, columns, UNITS, walk.meta)
+    write_table(path, columns, UNITS, walk.meta, smooth=True)
 
 
 def read_walk(path: str | os.PathLike[str]) -> Walk:

@@ -31,19 +31,33 @@ def tables(draw):
     return columns, draw(st.fixed_dictionaries({name: names | st.just("") for name in columns}))
 
 
-@given(tables(), metas)
-def test_columns_units_and_provenance_come_back(tmp_path_factory, table, meta):
+@given(tables(), metas, st.booleans())
+def test_columns_units_and_provenance_come_back(tmp_path_factory, table, meta, smooth):
     columns, units = table
     path = tmp_path_factory.mktemp("table") / "x.parquet"
-    write_table(path, columns, units, meta)
+    write_table(path, columns, units, meta, smooth=smooth)
     back, found = read_table(path)
     assert list(back) == list(columns)
     for name, values in columns.items():
         assert back[name].dtype == values.dtype
-        np.testing.assert_array_equal(back[name], values)
+        assert back[name].tobytes() == values.tobytes()
         assert back[name].flags.writeable
     assert found == meta
     assert json.loads(pq.read_schema(path).metadata[UNITS_KEY]) == units
+
+
+def test_smooth_columns_are_small_without_a_dictionary_and_quantised_ones_with_one(tmp_path):
+    t = np.arange(50_000) / 200
+    swing = np.sin(7 * t) + np.random.default_rng(0).normal(0, 1e-3, len(t))
+    sizes = {}
+    for kind, values in (("swing", swing), ("quantised", np.round(swing, 2))):
+        for smooth in (False, True):
+            path = tmp_path / "x.parquet"
+            write_table(path, {"x": values}, {"x": ""}, {}, smooth=smooth)
+            assert read_table(path)[0]["x"].tobytes() == values.tobytes()
+            sizes[kind, smooth] = path.stat().st_size
+    assert sizes["swing", True] < 0.85 * sizes["swing", False]
+    assert sizes["quantised", False] < 0.85 * sizes["quantised", True]
 
 
 def test_columns_may_be_slices_of_something_larger(tmp_path):
