@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,7 +34,7 @@ class DriftBudget:
     total: np.ndarray
 
 
-def drift_budget(walk: Walk, signals: Mapping[str, np.ndarray], bias_time: float) -> DriftBudget:
+def drift_budget(walk: Walk, signals: Iterable[tuple[str, np.ndarray]], bias_time: float) -> DriftBudget:
     """Drift of each stride between true footfalls.
 
     Every stride starts from the true attitude, as if the accelerometers had just mended the tilt. The gyro
@@ -45,7 +45,7 @@ def drift_budget(walk: Walk, signals: Mapping[str, np.ndarray], bias_time: float
 
     Parameters
     ----------
-    signals : effect -> (n, 3) rad/s, the gyro after this effect and all before it, in their order
+    signals : each effect and (n, 3) rad/s, the gyro after it and all before it, in their order
     bias_time : s of motionless start over which the static bias is averaged
 
     Raises
@@ -69,7 +69,7 @@ def drift_budget(walk: Walk, signals: Mapping[str, np.ndarray], bias_time: float
     back = (start * turned(walk.gyro)).inv()
     previous, total = walk.gyro, np.zeros(len(interval))
     causes = {}
-    for name, signal in signals.items():
+    for name, signal in signals:
         if signal is previous:  # switched off, or not an error of this unit
             causes[name] = np.zeros(len(interval))
             continue

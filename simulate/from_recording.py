@@ -2,25 +2,15 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Collection
 from dataclasses import asdict
 
 import numpy as np
 
 from footfall.identity import digest_of
-from footfall.models.imu import (
-    EFFECTS,
-    ROOM,
-    Channel,
-    ImuUnit,
-    TemperatureProfile,
-    TriadUnit,
-    require_effects,
-    stages,
-)
+from footfall.models.imu import EFFECTS, ROOM, ImuUnit, TemperatureProfile, require_effects
+from footfall.models.imu.effects import Channel, sensed
 from footfall.recording import Recording
-from footfall.streams import stream
 
 # What makes a heading drift and can be laid on top. The rest a real recording has already: its sensor's scale
 # and alignment, bandwidth, noise, range and resolution, which a second time would be those of no sensor.
@@ -56,16 +46,16 @@ def add_errors(
     die = temperature.die(recording.t, unit.spec.thermal.time_constant)
 
     def worse(name: str) -> np.ndarray:
-        triad: TriadUnit = getattr(unit, name)
-        channel = Channel(
-            unit=triad,
-            true=getattr(recording, name),
+        channel = Channel.of(
+            unit,
+            name,
+            getattr(recording, name),
             force=recording.accel,
-            warmth=die - unit.spec.thermal.reference,
+            die=die,
             interval=recording.interval,
-            stream=lambda noise: stream(seed, f"noise.{name}.{noise}"),
+            seed=seed,
         )
-        return deque(stages(channel, left_out), maxlen=1)[0][1].copy()
+        return sensed(channel, left_out)
 
     return Recording(
         t=recording.t,

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import asdict
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from footfall.identity import WALK, digest_of
-from footfall.models.imu import ROOM, Channel, ImuUnit, TemperatureProfile, TriadUnit, stages
+from footfall.models.imu import ROOM, ImuUnit, TemperatureProfile
+from footfall.models.imu.effects import Channel, sensed, stages
 from footfall.recording import Recording
 from footfall.simulate.budget import DriftBudget, drift_budget
 from footfall.simulate.walk import Walk
-from footfall.streams import stream
 
 BIAS_TIME = 25.0  # s, T_bias of the HDR paper, section 2
 
@@ -45,10 +44,10 @@ def record(
         An effect that does not exist, or a seed that is no integer of 0 or more.
     """
     die = temperature.die(walk.t, unit.spec.thermal.time_constant)
-    gyro = _last(_channel(walk, unit, "gyro", die, seed), without)
-    return _recording(
-        walk, unit, _shifted(gyro, walk, bias_shift), die, seed, temperature, without, bias_shift
-    )
+    gyro = sensed(_channel(walk, unit, "gyro", die, seed), without)
+    if bias_shift:
+        _shift(gyro, walk, bias_shift)
+    return _recording(walk, unit, gyro, die, seed, temperature, without, bias_shift)
 
 
 def record_with_budget(
@@ -73,37 +72,33 @@ def record_with_budget(
         As `record`; or the walk's motionless start is shorter than `bias_time`.
     """
     die = temperature.die(walk.t, unit.spec.thermal.time_constant)
-    signals = dict(stages(_channel(walk, unit, "gyro", die, seed), without))
-    gyro = signals[next(reversed(signals))]
-    if bias_shift:
-        gyro = signals["bias_shift"] = _shifted(gyro, walk, bias_shift)
-    recording = _recording(walk, unit, gyro, die, seed, temperature, without, bias_shift)
-    return recording, drift_budget(walk, signals, bias_time)
+    gyro = walk.gyro
+
+    def signals() -> Iterator[tuple[str, np.ndarray]]:
+        nonlocal gyro
+        for name, gyro in stages(_channel(walk, unit, "gyro", die, seed), without):
+            yield name, gyro
+        if bias_shift:
+            gyro = gyro.copy()
+            _shift(gyro, walk, bias_shift)
+            yield "bias_shift", gyro
+
+    budget = drift_budget(walk, signals(), bias_time)  # of one signal after the other, none of them kept
+    if gyro is walk.gyro:
+        gyro = gyro.copy()
+    return _recording(walk, unit, gyro, die, seed, temperature, without, bias_shift), budget
 
 
-def _shifted(gyro: np.ndarray, walk: Walk, bias_shift: float) -> np.ndarray:
-    """(n, 3) rad/s: the gyro with a bias about the vertical from the first step on."""
-    if not bias_shift:
-        return gyro
+def _shift(gyro: np.ndarray, walk: Walk, bias_shift: float) -> None:
+    """Add a bias of `bias_shift` rad/s about the vertical, from the first step on, to the gyro (n, 3)."""
     up = Rotation.from_quat(walk.quaternion[0], scalar_first=True).inv().apply([0.0, 0.0, bias_shift])
-    walking = walk.t - walk.t[0] > walk.calibration_s + 1e-6
-    return np.asarray(gyro + walking[:, None] * up)
+    first = int(np.searchsorted(walk.t - walk.t[0], walk.calibration_s + 1e-6, side="right"))
+    gyro[first:] += up
 
 
 def _channel(walk: Walk, unit: ImuUnit, name: str, die: np.ndarray, seed: int) -> Channel:
-    triad: TriadUnit = getattr(unit, name)
-    return Channel(
-        unit=triad,
-        true=getattr(walk, name),
-        force=walk.accel,
-        warmth=die - unit.spec.thermal.reference,
-        interval=walk.interval,
-        stream=lambda noise: stream(seed, f"noise.{name}.{noise}"),
-    )
-
-
-def _last(channel: Channel, without: Collection[str]) -> np.ndarray:
-    return deque(stages(channel, without), maxlen=1)[0][1]
+    true = getattr(walk, name)
+    return Channel.of(unit, name, true, force=walk.accel, die=die, interval=walk.interval, seed=seed)
 
 
 def _recording(
@@ -119,8 +114,8 @@ def _recording(
     position, heading = walk.pose_at_rest(BIAS_TIME)
     return Recording(
         t=walk.t - walk.t[0],
-        gyro=gyro.copy(),
-        accel=_last(_channel(walk, unit, "accel", die, seed), without).copy(),
+        gyro=gyro,
+        accel=sensed(_channel(walk, unit, "accel", die, seed), without),
         temperature=_reported(unit, die),
         meta={
             WALK: dict(walk.meta),

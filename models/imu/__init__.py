@@ -1,6 +1,6 @@
 """What a real IMU does to true rates and forces: data sheets, units drawn from them, error effects."""
 
-from footfall.models.imu.effects import EFFECTS, Channel, require_effects, stages
+from footfall.models.imu.names import EFFECTS, require_effects
 from footfall.models.imu.spec import (
     ImuSpec,
     SheetDocument,
@@ -17,7 +17,6 @@ from footfall.models.imu.unit import ImuUnit, TriadUnit, draw_unit
 __all__ = [
     "EFFECTS",
     "ROOM",
-    "Channel",
     "ImuSpec",
     "ImuUnit",
     "SheetDocument",
@@ -30,6 +29,5 @@ __all__ = [
     "load_spec",
     "read_sheet",
     "require_effects",
-    "stages",
     "stock_specs",
 ]

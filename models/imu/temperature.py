@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import lfilter
 
 from footfall.errors import InputError
 
@@ -62,12 +61,14 @@ class TemperatureProfile:
         air = np.interp(t, self.time, self.ambient)
         if time_constant == 0:
             return air
+        from footfall.models.imu._kernels import add_lag
+
         x = (t[-1] - t[0]) / (len(t) - 1) / time_constant
         decay, mean = math.exp(-x), -math.expm1(-x) / x
         # Lag e = T - A obeys e' = -e/tau - A': e+ = decay e - mean (A+ - A). Written in the lag so that a die
         # as warm as steady air stays there exactly.
-        drive = np.concatenate([[self.start - air[0]], -mean * np.diff(air)])
-        return air + lfilter([1.0], [1.0, -decay], drive)
+        add_lag(air, self.start - air[0], decay, mean)
+        return air
 
 
 ROOM = TemperatureProfile.steady(20.0)

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from scipy.signal import butter, sosfreqz
 
 from footfall.errors import InputError
-from footfall.models.imu import EFFECTS, Channel, ImuSpec, TriadSpec, draw_unit, load_spec, stages
+from footfall.models.imu import EFFECTS, ImuSpec, TriadSpec, draw_unit, load_spec
+from footfall.models.imu.effects import Channel, sensed, stages
 from footfall.streams import stream
 
 N = 400
@@ -37,7 +38,7 @@ def channel(spec: TriadSpec, true=TRUE, force=FORCE, warmth=None, interval=0.005
 
 
 def final(chan: Channel, without=()) -> np.ndarray:
-    return list(stages(chan, without))[-1][1]
+    return sensed(chan, without)
 
 
 def test_the_effects_come_in_the_order_of_the_sensor():

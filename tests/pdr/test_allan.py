@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from footfall.errors import InputError
-from footfall.models.imu import ROOM, Channel, ImuSpec, TriadSpec, draw_unit, load_spec, stages
+from footfall.models.imu import ROOM, ImuSpec, TriadSpec, draw_unit, load_spec
+from footfall.models.imu.effects import Channel, sensed
 from footfall.pdr.allan import AllanFit, allan_deviation, fit_allan, suggest_bias_time
 from footfall.streams import stream
 
@@ -19,7 +20,7 @@ def at_rest(spec: ImuSpec, duration: float, interval: float, seed: int = 0) -> n
     chan = Channel(
         draw_unit(spec, seed).gyro, zeros, zeros, warmth, interval, lambda name: stream(seed, name)
     )
-    return list(stages(chan))[-1][1]
+    return sensed(chan)
 
 
 def test_it_is_allantools_overlapping_deviation():

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import tracemalloc
 from itertools import pairwise
 
 import numpy as np
@@ -288,7 +289,7 @@ def test_temperature_drift_is_first_order_theory(walk):
 def test_a_pure_delay_is_no_drift(walk):
     """Two samples late, a foot at rest at both footfalls has turned as far; a plain mean disagrees."""
     late = np.vstack([walk.gyro[:2], walk.gyro[:-2]])
-    budget = drift_budget(walk, {"delay": late}, BIAS_TIME)
+    budget = drift_budget(walk, [("delay", late)], BIAS_TIME)
     assert np.abs(budget.total).max() < 1e-13
     plain = stride_means(walk, (body_to_world(walk) * (late - walk.gyro)[1:]).sum(axis=1))
     assert np.abs(plain).mean() > 1e-4  # rad/s: 7 deg in 20 minutes
@@ -322,3 +323,24 @@ def test_kernel_composes_as_scipy_does():
             (product.inv() * Rotation.from_quat(ours[i], scalar_first=True)).magnitude(), 0, atol=1e-14
         )
         assert np.linalg.norm(ours[i]) == pytest.approx(1, abs=1e-14)
+
+
+def test_what_is_handed_out_cannot_be_written_into(walk, nimu):
+    for recording in (record(walk, nimu, seed=0), record_with_budget(walk, nimu, seed=0)[0]):
+        for name in ("t", "gyro", "accel", "temperature"):
+            assert not getattr(recording, name).flags.writeable
+    perfect = draw_unit(load_spec("perfect"), 0)
+    recording, _ = record_with_budget(walk, perfect, seed=0)
+    assert not np.shares_memory(recording.gyro, walk.gyro)
+    assert walk.gyro.flags.writeable
+
+
+@pytest.mark.parametrize("make", [record, record_with_budget])
+def test_a_recording_needs_little_memory_beside_its_own(walk, nimu, make):
+    """64 bytes a sample are the recording; the budget is made of one signal after the other."""
+    make(walk, nimu, seed=0, temperature=COLD)  # compiles
+    tracemalloc.start()
+    make(walk, nimu, seed=0, temperature=COLD)
+    most = tracemalloc.get_traced_memory()[1] / len(walk.t)
+    tracemalloc.stop()
+    assert most < (90 if make is record else 150)
