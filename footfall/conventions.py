@@ -1,4 +1,4 @@
-"""What every room agrees on: gravity, and how headings are read from attitudes and kept in range.
+"""What every room agrees on: gravity, T_bias, and how headings are read from attitudes and kept in range.
 
 World: x forward at the start, y left, z up; heading counter-clockwise from x. Quaternions: Hamilton, scalar
 first, body to world.
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 GRAVITY = 9.80665  # m/s2, standard gravity
+BIAS_TIME = 25.0  # s, T_bias: at rest before a walk, for the static bias (HDR paper, section 2)
 
 
 def heading_of(quaternion: ArrayLike) -> np.ndarray:

@@ -13,6 +13,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
+from footfall.conventions import BIAS_TIME
 from footfall.errors import InputError
 from footfall.models.body import MOUNTS
 from footfall.models.imu import TemperatureProfile, load_spec, stock_specs
@@ -20,7 +21,6 @@ from footfall.models.subject import SHOES, SUBJECTS, Subject
 from footfall.scenarios.path import Path, PathSpec, build_path
 from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height
 from footfall.simulate.plan import PHYSICS_STEP, Disturbance, Gait, Pace, Plan, Stop
-from footfall.simulate.record import BIAS_TIME
 from footfall.simulate.truth import divisor
 from footfall.toml import Strict, checked, parse_toml
 

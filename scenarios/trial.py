@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
+from footfall.conventions import BIAS_TIME
 from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams
 from footfall.hdr.method import Method
@@ -31,7 +32,7 @@ from footfall.scenarios.scenario import Scenario
 from footfall.simulate.budget import DriftBudget
 from footfall.simulate.cache import cached_walk
 from footfall.simulate.plan import Plan
-from footfall.simulate.record import BIAS_TIME, record, record_with_budget
+from footfall.simulate.record import record, record_with_budget
 from footfall.simulate.walk import Walk
 
 DEFAULT_METHODS = ("pdr", "hdr")

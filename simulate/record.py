@@ -8,14 +8,13 @@ from dataclasses import asdict
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from footfall.conventions import BIAS_TIME
 from footfall.identity import WALK, digest_of
 from footfall.models.imu import ROOM, ImuUnit, TemperatureProfile
 from footfall.models.imu.effects import Channel, sensed, stages
 from footfall.recording import Recording
 from footfall.simulate.budget import DriftBudget, drift_budget
 from footfall.simulate.walk import Walk
-
-BIAS_TIME = 25.0  # s, T_bias of the HDR paper, section 2
 
 
 def record(

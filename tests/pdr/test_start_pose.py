@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from footfall.conventions import BIAS_TIME
 from footfall.hdr.filtered import filter_track
 from footfall.hdr.methods import METHODS, Reckoning, tracks
 from footfall.models.imu import draw_unit, load_spec
@@ -15,7 +16,7 @@ from footfall.pdr.stream import dead_reckon_blocks
 from footfall.recording import Recording
 from footfall.scenarios.judge.score import compare, score
 from footfall.scenarios.trial import start_pose
-from footfall.simulate.record import BIAS_TIME, record
+from footfall.simulate.record import record
 from tests.helpers.synthetic import synthetic_walk
 from tests.helpers.synthetic_foot import walk
 

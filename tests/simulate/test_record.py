@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from footfall.conventions import BIAS_TIME
 from footfall.errors import InputError
 from footfall.models.imu import EFFECTS, ImuSpec, ImuUnit, TemperatureProfile, TriadSpec, draw_unit, load_spec
 from footfall.recording import Recording, read_recording, write_recording
 from footfall.simulate._budget_kernels import compose
 from footfall.simulate.budget import DriftBudget, drift_budget, write_budget
-from footfall.simulate.record import BIAS_TIME, record, record_with_budget
+from footfall.simulate.record import record, record_with_budget
 from footfall.simulate.walk import TrueFootfalls, Walk
 from footfall.tables import read_table
 from tests.helpers.synthetic import synthetic_walk
