@@ -14,20 +14,17 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from footfall.conventions import GRAVITY, heading_of
+from footfall.conventions import BIAS_TIME, heading_of
 from footfall.errors import InputError
 from footfall.pdr import _kernels
 from footfall.pdr._detection import less
 from footfall.pdr.footfalls import Footfalls
+from footfall.pdr.rest import Rest, static_bias
 from footfall.pdr.stance import Detector, StanceParams, Stances, ThresholdDetector, compact, find_stances
 from footfall.pdr.strapdown import ORIGIN
 from footfall.recording import Recording
 from footfall.settings import require, setting
 
-REST_BLOCK_S = 0.5
-REST_GYRO = math.radians(2.0)
-REST_ACCEL = 0.4
-REST_GRAVITY = 1.0
 MIN_LEVEL = math.sin(math.radians(10.0))
 
 
@@ -72,7 +69,7 @@ class PdrParams:
     detector : what rest is
     """
 
-    bias_s: float = setting(25.0, unit="s", gt=0)
+    bias_s: float = setting(BIAS_TIME, unit="s", gt=0)
     tilt_gain: float = setting(0.2, ge=0, le=1)
     max_gap_s: float = setting(0.25, unit="s", ge=0, le=math.inf)
     stance: StanceParams = field(default_factory=StanceParams)
@@ -80,22 +77,6 @@ class PdrParams:
 
     def __post_init__(self) -> None:
         require("pdr", self)
-
-
-@dataclass(frozen=True)
-class Rest:
-    """What the still start says.
-
-    Attributes
-    ----------
-    gyro_bias : (3,) rad/s, the static bias eps0 as a vector in the body (HDR Eq. 1)
-    force : (3,) m/s2, mean specific force: which way is up
-    last : index of the last sample that was averaged
-    """
-
-    gyro_bias: np.ndarray
-    force: np.ndarray
-    last: int
 
 
 @dataclass(frozen=True)
@@ -112,47 +93,6 @@ class Detected:
     rest: Rest
     score: np.ndarray
     stances: Stances
-
-
-def static_bias(recording: Recording, bias_s: float) -> Rest:
-    """Average the first `bias_s` seconds, which must be motionless (HDR paper, section 2, T_bias).
-
-    Raises
-    ------
-    InputError
-        The recording is shorter, moves within that time, or does not measure gravity in m/s2.
-    """
-    t = recording.t - recording.t[0]
-    if t[-1] < bias_s - 1e-6:
-        raise InputError(
-            f"lasts {t[-1]:.4g} s, shorter than the {bias_s:g} s at rest for the static bias", "recording"
-        )
-    last = int(np.searchsorted(t, bias_s + 1e-6)) - 1
-    # Row 0 is the start: its sample belongs to time before the record.
-    gyro, accel = recording.gyro[1 : last + 1], recording.accel[1 : last + 1]
-    if len(gyro) == 0:
-        raise InputError(f"no sample within the first {bias_s:g} s", "recording")
-    # Means of half a second: sensor noise averages out, a foot that is put down does not.
-    block = np.minimum(t[1 : last + 1] // REST_BLOCK_S, max(int(bias_s / REST_BLOCK_S) - 1, 0)).astype(int)
-    used, first, count = np.unique(block, return_index=True, return_counts=True)
-    for name, values, limit in (("gyro", gyro, REST_GYRO), ("accel", accel, REST_ACCEL)):
-        blocks = np.add.reduceat(values, first, axis=0) / count[:, None]
-        moved = np.linalg.norm(blocks - blocks[0], axis=1) > limit
-        if moved.any():
-            when = used[np.argmax(moved)] * REST_BLOCK_S
-            raise InputError(
-                f"the IMU moves at t = {when:g} s ({name}), "
-                f"but the static bias needs the first {bias_s:g} s at rest",
-                "recording",
-            )
-    rest = Rest(gyro_bias=gyro.mean(axis=0), force=accel.mean(axis=0), last=last)
-    if abs(np.linalg.norm(rest.force) - GRAVITY) > REST_GRAVITY:
-        raise InputError(
-            f"the accelerometers measure {np.linalg.norm(rest.force):.3g} at rest, "
-            f"expected {GRAVITY:.3g} +- {REST_GRAVITY:g} m/s2",
-            "recording",
-        )
-    return rest
 
 
 def level_attitude(force: np.ndarray) -> np.ndarray:

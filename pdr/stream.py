@@ -12,14 +12,13 @@ from footfall.pdr import _kernels
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.reckoning import (
     PdrParams,
-    Rest,
     StartPose,
     level_attitude,
     placed,
     refuse_gaps,
     scores,
-    static_bias,
 )
+from footfall.pdr.rest import Rest, static_bias
 from footfall.pdr.stance import compact, find_stances
 from footfall.recording import Recording
 from footfall.runs import runs

@@ -22,7 +22,8 @@ from footfall.pdr.filter.ins import (
 )
 from footfall.pdr.filter.smooth import Node, smoothed
 from footfall.pdr.footfalls import Footfalls
-from footfall.pdr.reckoning import Detected, PdrParams, Rest, StartPose, detect, level_attitude
+from footfall.pdr.reckoning import Detected, PdrParams, StartPose, detect, level_attitude
+from footfall.pdr.rest import Rest
 from footfall.recording import Recording
 from footfall.runs import runs
 

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from footfall.conventions import GRAVITY
 from footfall.pdr import _detection, _plain
 from footfall.pdr.detectors import Means
-from footfall.pdr.reckoning import PdrParams, detect, static_bias
+from footfall.pdr.reckoning import PdrParams, detect
+from footfall.pdr.rest import static_bias
 from footfall.pdr.stance import StanceParams, ThresholdDetector, find_stances
 from tests.helpers.synthetic_foot import walk
 

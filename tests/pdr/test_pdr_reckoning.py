@@ -7,7 +7,8 @@ from scipy.spatial.transform import Rotation
 from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
 from footfall.pdr import _kernels, _plain
-from footfall.pdr.reckoning import PdrParams, StartPose, dead_reckon, level_attitude, static_bias
+from footfall.pdr.reckoning import PdrParams, StartPose, dead_reckon, level_attitude
+from footfall.pdr.rest import static_bias
 from footfall.pdr.stance import StanceParams
 from footfall.recording import Recording
 from tests.helpers.synthetic_foot import walk

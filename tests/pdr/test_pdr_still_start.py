@@ -6,7 +6,8 @@ from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
-from footfall.pdr.reckoning import PdrParams, StartPose, level_attitude, static_bias
+from footfall.pdr.reckoning import PdrParams, StartPose, level_attitude
+from footfall.pdr.rest import static_bias
 from footfall.recording import Recording
 
 DEG = np.pi / 180
