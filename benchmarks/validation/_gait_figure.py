@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.validation._gait_strides import N_PHASE
+from footfall.pdr.gait.strides import N_PHASE
 from footfall.scenarios.report.figures import new_figure, save
 
 # Column of the normalised signals -> what it is; degrees for rates.

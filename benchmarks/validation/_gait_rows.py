@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.validation._gait_statistics import SIGNALS
+from footfall.pdr.gait.statistics import SIGNALS
 
 
 @dataclass(frozen=True)

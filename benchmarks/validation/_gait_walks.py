@@ -13,6 +13,7 @@ from footfall.models import body
 from footfall.models.body import MOUNTS, Mount
 from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import SUBJECTS
+from footfall.recording import Recording
 from footfall.scenarios.path import PathSpec, build_path
 from footfall.simulate.episode import STAND_S, stroll
 from footfall.simulate.plan import PHYSICS_STEP, Gait, Plan
@@ -95,8 +96,8 @@ def walk_straight(case: Case, metres: float, policy: Policy | None = None) -> Mo
     return Motion(case, foot, feet * subject.scale, load, ankle, subject.scale)
 
 
-def samples(motion: Motion, mount: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What a perfect IMU at a stock mount of the right foot says at the physics rate: t, gyro, accel.
+def samples(motion: Motion, mount: str) -> Recording:
+    """What a perfect IMU at a stock mount of the right foot says at the physics rate.
 
     The mount is one rigid body with the ankle's site, so one walk serves all mounts.
     """
@@ -105,4 +106,4 @@ def samples(motion: Motion, mount: str) -> tuple[np.ndarray, np.ndarray, np.ndar
     position = motion.foot[:, :3] + attitude.apply(np.array(place.position) * motion.scale)
     turned = attitude * Rotation.from_euler("ZYX", place.euler_deg[::-1], degrees=True)
     truth = imu_truth(position, turned.as_quat(scalar_first=True), PHYSICS_STEP, 1)
-    return truth.index * PHYSICS_STEP, truth.gyro, truth.accel
+    return Recording(truth.index * PHYSICS_STEP, truth.gyro, truth.accel)

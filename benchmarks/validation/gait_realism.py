@@ -21,16 +21,17 @@ import numpy as np
 
 from benchmarks._common import err, options, out, run_all, write_json
 from benchmarks._page import by_name, fill
+from benchmarks.validation._gait_distances import distances
 from benchmarks.validation._gait_figure import draw
 from benchmarks.validation._gait_kinetics import walk_figures
 from benchmarks.validation._gait_page import bounds, sheets, tally
 from benchmarks.validation._gait_rows import judged
-from benchmarks.validation._gait_statistics import bands, distances, foot_figures
-from benchmarks.validation._gait_strides import BANDWIDTH_HZ, Foot, matched, normalised, read_foot
 from benchmarks.validation._gait_walks import Case, samples, walk_straight
 from benchmarks.validation._real import BESIDE, find
 from footfall.errors import InputError
 from footfall.models.policy import load_policy, stock_policy
+from footfall.pdr.gait.statistics import bands, foot_figures
+from footfall.pdr.gait.strides import BANDWIDTH_HZ, Foot, normalised, read_foot
 
 FEWEST = 3  # real recordings: fewer have no spread
 FASTEST = 1.7  # m/s, of the walks here
@@ -82,10 +83,7 @@ def perform(job: Job) -> Walked | str:
         motion = walk_straight(job.case, job.metres, policy)
     except InputError as error:
         return str(error)
-    feet = {
-        mount: read_foot(matched(*samples(motion, mount), bandwidth_hz=job.bandwidth_hz))
-        for mount in job.mounts
-    }
+    feet = {mount: read_foot(samples(motion, mount), job.bandwidth_hz) for mount in job.mounts}
     return Walked(walk_figures(motion), feet)
 
 
@@ -118,11 +116,7 @@ def read_real(folder: Path, bandwidth_hz: float) -> dict[str, Foot]:
     found = find(folder)
     if len(found) < FEWEST:
         raise InputError(f"{folder}: {len(found)} recordings, expected {FEWEST} or more to judge by")
-    feet = {}
-    for one in found:
-        raw = one.recording
-        feet[one.name] = read_foot(matched(raw.t, raw.gyro, raw.accel, bandwidth_hz))
-    return feet
+    return {one.name: read_foot(one.recording, bandwidth_hz) for one in found}
 
 
 def all_figures(

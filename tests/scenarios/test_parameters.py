@@ -44,7 +44,11 @@ def other(parameter):
     if isinstance(now, bool):
         return not now
     if isinstance(now, int | float):
-        return now + 1 if isinstance(now, int) and "number" not in parameter.type.split()[:1] else (now * 0.999 if now else 1e-3)
+        return (
+            now + 1
+            if isinstance(now, int) and "number" not in parameter.type.split()[:1]
+            else (now * 0.999 if now else 1e-3)
+        )
     return None
 
 
@@ -86,7 +90,8 @@ def test_a_value_set_to_what_it_is_changes_nothing(name):
     values = {
         one.address: one.default
         for one in parameters(base)
-        if one.default not in (None, "drawn") and not isinstance(one.default, list | tuple)
+        if one.default not in (None, "drawn")
+        and not isinstance(one.default, list | tuple)
         # An element of a list that is given by other keys.
         and not one.address.endswith((".side", ".kind"))
     }
@@ -129,7 +134,9 @@ def test_a_stock_subject_becomes_a_table_when_something_in_it_is_set():
 def test_every_arc_of_a_path_is_set_at_once():
     made = with_values(documents("curving"), {"scenario.path.elements[kind=arc].radius_m": 77.0}).setup()
     before = documents("curving").setup().scenario.path.route
-    assert np.ptp(1 / np.abs(made.scenario.path.route.curvature[made.scenario.path.route.curvature != 0])) < 1e-6
+    assert (
+        np.ptp(1 / np.abs(made.scenario.path.route.curvature[made.scenario.path.route.curvature != 0])) < 1e-6
+    )
     assert len(np.unique(np.round(np.abs(before.curvature), 6))) > 2
 
 
@@ -144,7 +151,9 @@ def test_constants_of_a_unit_are_in_the_units_of_the_sheet():
 
 
 def test_texts_are_values_as_in_toml():
-    assert parsed(["a.b=1", "c = 0.5", "d=[1, 2]", 'e="x y"', "f=nimu", "g=true", "h[kind=arc].r=3", "i="]) == {
+    assert parsed(
+        ["a.b=1", "c = 0.5", "d=[1, 2]", 'e="x y"', "f=nimu", "g=true", "h[kind=arc].r=3", "i="]
+    ) == {
         "a.b": 1,
         "c": 0.5,
         "d": [1, 2],
@@ -163,7 +172,11 @@ def test_texts_are_values_as_in_toml():
 @pytest.mark.parametrize(
     ("address", "value", "message"),
     [
-        ("scenario.gait.pace", 1.0, r"^scenario\.gait\.pace: unknown; did you mean scenario\.gait\.pace_m_s\?$"),
+        (
+            "scenario.gait.pace",
+            1.0,
+            r"^scenario\.gait\.pace: unknown; did you mean scenario\.gait\.pace_m_s\?$",
+        ),
         ("scenario.gait.pace_m_s", 9.0, r"gait\.pace_m_s = 9\.0: Input should be less than or equal to 1\.7"),
         ("scenario.gait.pace_m_s", "fast", r"gait\.pace_m_s = 'fast': Input should be a valid number"),
         ("scenario.path.elements.radius_m", 3.0, "unknown; did you mean scenario"),

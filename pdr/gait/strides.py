@@ -1,7 +1,8 @@
 """One foot's strides from its IMU alone: the same reading of a simulated foot and of a real one.
 
 How the sensor sits on the foot, when the foot is on the ground and where it goes is found from the signals:
-whatever this gets wrong it gets wrong on both sides of a comparison.
+whatever this gets wrong it gets wrong on both sides of a comparison. Axes, rates and forces are the foot's: x
+forward, y left, z up when it stands flat.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from footfall.conventions import GRAVITY
 from footfall.errors import InputError
 from footfall.pdr.stance import StanceParams, ThresholdDetector, find_stances
 from footfall.pdr.strapdown import integrate
+from footfall.recording import Recording
 
 RATE_HZ = 200.0
 BANDWIDTH_HZ = 50.0
@@ -83,9 +85,7 @@ class Foot:
     strides: tuple[Stride, ...]
 
 
-def matched(
-    t: np.ndarray, gyro: np.ndarray, accel: np.ndarray, bandwidth_hz: float = BANDWIDTH_HZ
-) -> Signals:
+def matched(recording: Recording, bandwidth_hz: float = BANDWIDTH_HZ) -> Signals:
     """Samples of any rate, brought to one bandwidth and one rate.
 
     A second-order Butterworth low-pass forwards and backwards (no delay; -3 dB at `bandwidth_hz` in all) at
@@ -93,12 +93,12 @@ def matched(
 
     Parameters
     ----------
-    t : (n,) s, increasing; dropped samples are bridged by a straight line
-    gyro, accel : (n, 3)
+    recording : dropped samples are bridged by a straight line
+    bandwidth_hz : Hz; where the recording has less, nothing is filtered
     """
-    interval = float(np.median(np.diff(t)))
+    t, interval = recording.t, recording.interval
     even = np.arange(t[0], t[-1], interval)
-    values = np.hstack([gyro, accel])
+    values = np.hstack([recording.gyro, recording.accel])
     values = np.column_stack([np.interp(even, t, column) for column in values.T])
     if bandwidth_hz < 0.5 / interval:
         # Two passes halve the power at `bandwidth_hz` if one takes 1.5 dB there: its own corner lies higher.
@@ -132,7 +132,7 @@ def aligned(signals: Signals) -> Signals:
     """
     rows = middles(signals)
     if len(rows) < 4:
-        raise InputError(f"{len(rows)} stances found, expected a walk")
+        raise InputError(f"recording: {len(rows)} stances found, expected a walk")
     gyro = signals.gyro - signals.gyro[: int(REST_S * RATE_HZ)].mean(axis=0)
     half = int(QUIET_S / 2 * RATE_HZ)
     up = np.mean([signals.accel[row - half : row + half + 1].mean(axis=0) for row in rows[1:-1]], axis=0)
@@ -200,18 +200,24 @@ def stride_of(signals: Signals, first: int, last: int) -> Stride:
     )
 
 
-def read_foot(signals: Signals, left: bool = False) -> Foot:
-    """Align a foot's signals and read its steady strides.
+def read_foot(recording: Recording, bandwidth_hz: float = BANDWIDTH_HZ, *, left: bool = False) -> Foot:
+    """The steady strides in a recording of a foot-mounted IMU that begins at rest, however it is mounted.
 
     Parameters
     ----------
+    bandwidth_hz : Hz, of the low-pass by which recordings are made alike (`matched`)
     left : the foot is a left one, and is mirrored
 
     Raises
     ------
     InputError
-        There are fewer than two steady strides.
+        There are too few stances for a walk, or fewer than two steady strides.
     """
+    return strides_of(matched(recording, bandwidth_hz), left=left)
+
+
+def strides_of(signals: Signals, *, left: bool = False) -> Foot:
+    """As `read_foot`, of signals that are matched."""
     signals = aligned(signals)
     if left:
         signals = mirrored(signals)
@@ -227,7 +233,7 @@ def read_foot(signals: Signals, left: bool = False) -> Foot:
     ]
     if len(steady) < 2:
         raise InputError(
-            f"{len(rows)} stances but {len(steady)} steady, straight strides, expected 2 or more"
+            f"recording: {len(rows)} stances but {len(steady)} steady, straight strides, expected 2 or more"
         )
     return Foot(signals, tuple(steady))
 

@@ -1,14 +1,14 @@
-"""Statistics of a foot's strides, and how far its mean stride is from those of others."""
+"""Statistics of a foot's strides: timing, swing, landing, stance, and how regular they are."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 
-from benchmarks.validation._gait_strides import QUIET_S, RATE_HZ, STILL_RATE, Foot, Stride
 from footfall.conventions import GRAVITY
+from footfall.pdr.gait.strides import QUIET_S, RATE_HZ, STILL_RATE, Foot, Stride
 
 FEWEST = 8  # strides that a standard deviation is taken of
 PUSH_S = 0.20  # before the peak of the pitch rate: the acceleration of push-off lies within
@@ -16,7 +16,7 @@ SIGNALS = ("gyro x", "gyro y", "gyro z", "gyro norm", "accel x", "accel y", "acc
 
 
 def longest_still(rate: np.ndarray) -> slice:
-    """The longest run of a rate (rad/s) below `STILL_RATE`; empty where there is none."""
+    """The longest run of a rate (n,) rad/s below `STILL_RATE`; empty where there is none."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], rate < STILL_RATE, [False]]))).reshape(-1, 2)
     if len(edges) == 0:
         return slice(0, 0)
@@ -45,7 +45,20 @@ def _mean(values: np.ndarray) -> float:
 
 
 def stride_figures(foot: Foot, stride: Stride) -> dict[str, float]:
-    """Figures of one stride, from crossing to crossing (see `Stride`)."""
+    """Figures of one stride, from crossing to crossing (see `Stride`); their names carry the unit.
+
+    Returns
+    -------
+    dict
+        `stride_s`, `stride_m`: duration and length. `still_pct`: of the stride below `STILL_RATE`.
+        `push_off_deg_s`, `swing_deg_s`: largest pitch rates, toes down at push-off and toes up in swing.
+        `swing_peak_pct`, `landing_pct`: of the stride, after the crossing between them; landing is where the
+        pitch rate changes back. `roll_deg_s`, `yaw_deg_s`: RMS rates.
+        `toe_down_deg`, `toe_up_deg`: largest pitch of the sole either way.
+        `heel_strike_m_s2` with its forward and upward part (`_x_`, `_z_`), `push_off_m_s2`: largest forces.
+        `mid_gyro_deg_s`: mean norm of the rate in the middle half of the still time, `mid_*_sd_*`: SD of its
+        samples, RMS over the axes; `quiet_*`: the same over the quietest 0.1 s.
+    """
     begin = round(stride.crossing - stride.duration * RATE_HZ)
     end = round(stride.crossing)
     gyro, accel = foot.signals.gyro[begin : stride.last + 1], foot.signals.accel[begin : stride.last + 1]
@@ -125,7 +138,15 @@ def _sd(values: np.ndarray) -> float:
 
 
 def foot_figures(foot: Foot) -> dict[str, float]:
-    """Figures of a foot: medians over its steady strides, and their scatter."""
+    """Figures of a foot: medians of `stride_figures` over its steady strides, and how regular they are.
+
+    Returns
+    -------
+    dict
+        Beside the medians: `strides`: how many. `speed_m_s`. `walk_ratio_mm_min`: step length over cadence.
+        `stride_sd_ms`, `stride_length_sd_cm`, `yaw_scatter_deg` (`stance_yaw`): standard deviations, NaN of
+        fewer than `FEWEST`. `g_ij`: `rectified`, gyro axis i, accelerometer axis j.
+    """
     each = [stride_figures(foot, stride) for stride in foot.strides]
     times, lengths = (np.array([row[name] for row in each]) for name in ("stride_s", "stride_m"))
     matrix = rectified(foot)
@@ -141,27 +162,18 @@ def foot_figures(foot: Foot) -> dict[str, float]:
     }
 
 
-def distance(mean: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """How far a mean stride is from others', signal by signal.
+def bands(strides: np.ndarray) -> dict[str, float]:
+    """How far a foot's strides scatter about their mean.
 
     Parameters
     ----------
-    mean : (phases, signals)
-    others : (recordings, phases, signals), their mean strides, two or more
+    strides : (strides, phases, 8), as of `normalised`
 
     Returns
     -------
-    far : (signals,) RMS difference from the mean of the others over the RMS of their standard deviation
-    within : (signals,) share of the stride that lies within the others' mean +- 2 standard deviations
+    dict
+        `band SIGNAL`: standard deviation, RMS over the stride (deg/s, m/s2); NaN of fewer than `FEWEST`.
     """
-    centre, spread = others.mean(axis=0), others.std(axis=0, ddof=1)
-    off = mean - centre
-    far = np.sqrt(np.mean(off**2, axis=0) / np.mean(spread**2, axis=0))
-    return far, np.mean(np.abs(off) <= 2 * spread, axis=0)
-
-
-def bands(strides: np.ndarray) -> dict[str, float]:
-    """Scatter of a foot's (strides, phases, signals), RMS over the stride (deg/s, m/s2), by row."""
     if len(strides) < FEWEST:
         return {f"band {signal}": float("nan") for signal in SIGNALS}
     wide = np.sqrt(np.mean(np.var(strides, axis=0, ddof=1), axis=0))
@@ -169,15 +181,3 @@ def bands(strides: np.ndarray) -> dict[str, float]:
         f"band {signal}": float(np.degrees(sd) if signal.startswith("gyro") else sd)
         for signal, sd in zip(SIGNALS, wide, strict=True)
     }
-
-
-def distances(means: Mapping[str, np.ndarray], real: Sequence[str]) -> dict[str, dict[str, float]]:
-    """`distance` of every foot from the real ones, of a real one from the others: by foot and row."""
-    found = {}
-    for name, mean in means.items():
-        far, within = distance(mean, np.array([means[other] for other in real if other != name]))
-        found[name] = {f"distance {signal}": float(value) for signal, value in zip(SIGNALS, far, strict=True)}
-        found[name] |= {
-            f"within {signal}": 100 * float(value) for signal, value in zip(SIGNALS, within, strict=True)
-        }
-    return found

@@ -1,0 +1,1 @@
+"""The strides of one foot from its IMU, and their statistics."""
