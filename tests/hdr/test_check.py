@@ -223,7 +223,7 @@ def test_a_check_catches_what_was_written_to_break_it(method, caught, reason):
     found = failing(method)
     assert caught in found, found
     assert re.search(reason, found[caught]), found[caught]
-    alone = dict.fromkeys((raises, returns_an_array, writes), set(HERE))  # none of which runs at all
+    alone = {one: set(HERE) for one in (raises, returns_an_array, writes)}  # none of which runs at all
     alone[writes] = alone[writes] - {"refuses what is too short"}  # by chance
     alone[starts_north] = {caught, "turns with its start"}
     assert set(found) == alone.get(method, {caught})
