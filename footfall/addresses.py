@@ -88,7 +88,9 @@ def _of(annotation: Any, told: list[Any], address: str, default: Any) -> Iterato
     for option in options:
         base, extra = _bare(option)
         if isinstance(base, type) and issubclass(base, BaseModel):
-            yield from keys(base, f"{address}.")
+            below = keys(base, f"{address}.")
+            # What is absent as a whole has no values that hold.
+            yield from (key._replace(default=None) for key in below) if NoneType in inner else below
         elif get_origin(base) is tuple and _models(get_args(base)[0]):
             yield from _elements(get_args(base)[0], address)
             if any(_bare(one)[0] is str for one in _options(get_args(base)[0])):

@@ -316,10 +316,10 @@ def parameters(base: Documents) -> Iterator[Parameter]:
     for name, constant in CONSTANTS.items():
         kind = "list of 3 numbers" if len(constant.shape) == 1 else "list of 3 rows of 3 numbers"
         yield Parameter(f"unit.{name}", kind, _unit_of(name), "drawn", "", "record")
-    pdr = reckoning_params(PdrParams(), base.detector, base.pdr)
+    made = base.setup()
     yield Parameter("pdr.detector", " or ".join(DETECTORS), "", base.detector or "threshold", "", "reckon")
-    yield from _settings("pdr", pdr, "reckon")
-    yield from _settings("filter", _about("filter", FilterSettings(), base.guided), "track")
+    yield from _settings("pdr", made.pdr, "reckon")
+    yield from _settings("filter", made.guided, "track")
     for method in base.methods:
         if method.params is not None:
             yield from _settings(method.name, method.params, "track")

@@ -70,6 +70,7 @@ def test_every_value_of_a_model_is_listed_once_with_its_bounds():
     assert found["gait.wander_m"] == Key("gait.wander_m", "list of numbers", ">= 0", (0.0,))
     assert found["path[kind=left].turn_deg"].bounds == "> -180, < 180"
     assert found["path[kind=right].radius_m"].bounds == "> 0"
+    assert found["push.wander_m"].default is None  # an absent table
     assert found["count"] == Key("count", "whole number", ">= 1", None)
 
 
