@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
-from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
 from types import ModuleType
 from typing import Any
@@ -35,8 +34,8 @@ def _register(register: Callable[..., None]) -> None:
     )
 
 
-class _Waiting(MetaPathFinder):
-    """Finds gymnasium's registry as Python does, and registers the environment once it is executed."""
+class _Waiting:
+    """A finder that finds gymnasium's registry as Python does, and registers the environment in it."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None

@@ -8,17 +8,17 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.csv as pa_csv
-import pyarrow.parquet as pq
 
 from footfall.errors import InputError
+from footfall.late import late
+
+pa, pa_csv, pq = late("pyarrow"), late("pyarrow.csv"), late("pyarrow.parquet")
 
 UNITS_KEY = b"footfall_units"
 META_KEY = b"footfall_meta"
@@ -72,7 +72,7 @@ def write_table(
         its own. What is quantised, as a recording is, has a dictionary of its values, which is smaller then.
     """
     schema_meta = {UNITS_KEY: json.dumps(dict(units)), META_KEY: json.dumps(dict(meta))}
-    table = pa.table({name: pa.array(np.ascontiguousarray(values)) for name, values in columns.items()})
+    table = pa.table({name: _array(values) for name, values in columns.items()})
     split = [name for name, values in columns.items() if smooth and values.dtype.kind == "f"]
     with replacing(path) as temporary:
         pq.write_table(
@@ -103,8 +103,7 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
         raise InputError("no such file", source)
     kind = "CSV" if source.suffix.lower() == ".csv" else "Parquet"
     try:
-        # A folder named like `seed=3` is no partition, and adds no column.
-        table = pa_csv.read_csv(source) if kind == "CSV" else pq.read_table(source, partitioning=None)
+        table = pa_csv.read_csv(source) if kind == "CSV" else pq.ParquetFile(source).read()
         names = table.column_names
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise _unreadable(source, kind, error) from None
@@ -115,10 +114,7 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
             raise InputError(f"two columns are called {name!r}", source)
         if not (pa.types.is_floating(holds) or pa.types.is_integer(holds) or pa.types.is_boolean(holds)):
             raise InputError(f"column {name!r} holds {holds}, expected numbers", source)
-        # Nulls become NaN, which each reader judges. A copy: Arrow's memory may be read-only, for which
-        # compiled kernels would have to be compiled once more.
-        values = column.to_numpy(zero_copy_only=False)
-        columns[name] = np.array(values, dtype=float if column.null_count else None)
+        columns[name] = numbers(column.chunks)
     return columns, _meta(source, table.schema)
 
 
@@ -139,11 +135,41 @@ def read_meta(path: str | os.PathLike[str]) -> dict[str, Any]:
         raise _unreadable(source, "Parquet", error) from None
 
 
+def numbers(chunks: Sequence[Any]) -> np.ndarray:
+    """Numeric Arrow arrays, one after the other, as one array (n,); nulls become NaN, for readers to judge.
+
+    A copy: Arrow's memory may be read-only, for which compiled kernels would have to be compiled once more.
+    By their buffers: Arrow's own way (`to_numpy`, and `array` back) imports pandas wherever there is one.
+    """
+    parts = [_values(chunk) for chunk in chunks]
+    return np.concatenate(parts) if parts else np.empty(0)
+
+
+def _values(chunk: Any) -> np.ndarray:
+    valid, data = chunk.buffers()
+    rows = slice(chunk.offset, chunk.offset + len(chunk))
+    if pa.types.is_boolean(chunk.type):
+        values = _bits(data)[rows]
+    else:
+        values = np.frombuffer(data or b"", chunk.type.to_pandas_dtype())[rows]
+    return np.where(_bits(valid)[rows], values.astype(float), np.nan) if chunk.null_count else values
+
+
+def _bits(buffer: Any) -> np.ndarray:
+    return np.unpackbits(np.frombuffer(buffer or b"", np.uint8), bitorder="little").astype(bool)
+
+
+def _array(values: np.ndarray) -> Any:
+    data = np.packbits(values, bitorder="little") if values.dtype == bool else np.ascontiguousarray(values)
+    kind = pa.from_numpy_dtype(values.dtype)
+    return pa.Array.from_buffers(kind, len(values), [None, pa.py_buffer(data)])
+
+
 def _unreadable(source: Path, kind: str, error: Exception) -> InputError:
     return InputError(f"not a readable {kind} file ({str(error).splitlines()[0]})", source)
 
 
-def _meta(source: Path, schema: pa.Schema) -> dict[str, Any]:
+def _meta(source: Path, schema: Any) -> dict[str, Any]:
     try:
         meta = json.loads((schema.metadata or {}).get(META_KEY, b"{}"))
     except ValueError:

@@ -15,9 +15,11 @@ from typing import NamedTuple
 import numpy as np
 
 from footfall.errors import InputError
-from footfall.hdr import _kernels
+from footfall.late import late
 from footfall.pdr.footfalls import Footfalls
 from footfall.settings import require, setting
+
+_kernels = late("footfall.hdr._kernels")
 
 
 @dataclass(frozen=True)

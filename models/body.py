@@ -8,13 +8,12 @@ ground contact acts.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
 from footfall.conventions import GRAVITY
-from footfall.errors import InputError
 from footfall.models.appearance import (
     SHIRT,
     SHOE,
@@ -24,6 +23,8 @@ from footfall.models.appearance import (
     add_sky_and_paving,
     add_torso_looks,
 )
+from footfall.models.mount import Mount
+from footfall.models.route import Ground
 from footfall.models.subject import REFERENCE_HEIGHT_M, Build
 
 # Joint names, in the order of qpos after the free joint. Right leg first: it carries the IMU by default.
@@ -92,47 +93,6 @@ ANKLE_HEIGHT = 0.075  # m above the ground, sole included, reference body
 SOLE_CENTRE, SOLE_HALF_LENGTH, SOLE_RISE, SOLE_HALF_GAP = 0.0425, 0.0975, 0.0055, 0.026
 HIP_HALF_WIDTH = 0.088
 HIP_HEIGHT = 0.95  # of the pelvis in standing
-
-
-@dataclass(frozen=True)
-class Mount:
-    """Where the IMU sits on a foot.
-
-    Attributes
-    ----------
-    foot : "right" or "left"
-    position : (3,) m from the ankle, x forward, y left, z up, of the 1.75 m body (scaled with stature)
-    euler_deg : (3,) roll, pitch, yaw of the IMU in the foot (z-y-x); positive pitch is nose down
-    """
-
-    foot: str = "right"
-    position: tuple[float, float, float] = (0.075, 0.0, -0.01)
-    euler_deg: tuple[float, float, float] = (0.0, 20.0, 0.0)
-
-    def __post_init__(self) -> None:
-        if self.foot not in ("right", "left"):
-            raise InputError(f"mount: foot = {self.foot!r}, expected 'right' or 'left'")
-        if not np.isfinite([*self.position, *self.euler_deg]).all():
-            raise InputError("mount: position and euler_deg must be finite")
-
-
-MOUNTS = {
-    "instep": Mount(),
-    # HDR paper, Figure 6: rigidly attached to the medial side of the right shoe.
-    "medial": Mount(position=(0.02, 0.045, -0.04), euler_deg=(0.0, 0.0, 0.0)),
-    "heel": Mount(position=(-0.06, 0.0, -0.03), euler_deg=(0.0, -10.0, 0.0)),
-    "instep-left": Mount(foot="left"),
-}
-
-
-@dataclass(frozen=True)
-class Ground:
-    """A grid of heights: `heights[j, i]` (m) at x = x0 + i cell, y = y0 + j cell."""
-
-    x0: float
-    y0: float
-    cell: float
-    heights: np.ndarray = field(repr=False)
 
 
 def build_body(

@@ -12,7 +12,7 @@ import numpy as np
 
 from footfall.models import body
 from footfall.models._ground_kernels import bilinear, lay
-from footfall.models.body import Ground
+from footfall.models.route import Ground
 
 GroundLookup = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 N_PLANES = 14  # numbers that pose the planes of two feet: positions (2, 3), then quaternions (2, 4), w first

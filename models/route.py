@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -30,3 +30,13 @@ class Route:
     def length(self) -> float:
         """Horizontal length (m)."""
         return float(self.s[-1])
+
+
+@dataclass(frozen=True)
+class Ground:
+    """A grid of heights: `heights[j, i]` (m) at x = x0 + i cell, y = y0 + j cell."""
+
+    x0: float
+    y0: float
+    cell: float
+    heights: np.ndarray = field(repr=False)

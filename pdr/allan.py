@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import nnls
 
 from footfall.errors import InputError
+from footfall.late import late
+
+optimize = late("scipy.optimize")
 
 
 def allan_deviation(x: np.ndarray, interval: float, tau: ArrayLike) -> np.ndarray:
@@ -96,7 +98,7 @@ def fit_allan(x: np.ndarray, interval: float) -> AllanFit:
     weight = 1 / (variance * np.sqrt(tau))
     terms = np.column_stack([1 / tau, np.ones_like(tau), tau / 3])
     size = np.linalg.norm(terms * weight[:, None], axis=0)  # columns of one length condition the fit
-    squares, _ = nnls(terms * weight[:, None] / size, variance * weight)
+    squares, _ = optimize.nnls(terms * weight[:, None] / size, variance * weight)
     white, floor, walk = np.sqrt(squares / size)
     return AllanFit(white=float(white), floor=float(floor), random_walk=float(walk), longest=float(tau[-1]))
 

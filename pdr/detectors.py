@@ -21,9 +21,11 @@ import numpy as np
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
-from footfall.pdr import _detection
+from footfall.late import late
 from footfall.pdr.stance import Detector, ThresholdDetector, compact
 from footfall.settings import require, setting
+
+_detection = late("footfall.pdr._detection")
 
 
 class Means(NamedTuple):

@@ -12,18 +12,20 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from footfall.conventions import BIAS_TIME, heading_of
 from footfall.errors import InputError
-from footfall.pdr import _kernels
-from footfall.pdr._detection import less
+from footfall.late import late
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.rest import Rest, static_bias
 from footfall.pdr.stance import Detector, StanceParams, Stances, ThresholdDetector, compact, find_stances
 from footfall.pdr.strapdown import ORIGIN
 from footfall.recording import Recording
 from footfall.settings import require, setting
+
+transform = late("scipy.spatial.transform")
+
+_detection, _kernels = late("footfall.pdr._detection"), late("footfall.pdr._kernels")
 
 MIN_LEVEL = math.sin(math.radians(10.0))
 
@@ -113,7 +115,7 @@ def level_attitude(force: np.ndarray) -> np.ndarray:
             "recording",
         )
     forward /= level
-    rotation = Rotation.from_matrix(np.array([forward, np.cross(up, forward), up]))
+    rotation = transform.Rotation.from_matrix(np.array([forward, np.cross(up, forward), up]))
     return np.asarray(rotation.as_quat(scalar_first=True))
 
 
@@ -180,7 +182,7 @@ def placed(t: np.ndarray, quaternion: np.ndarray, position: np.ndarray, start: S
     Stamps (n,), attitudes (n, 4) and positions (n, 3). Between the rest and row 0 the foot may turn on the
     ground, more slowly than any detector tells from rest: row 0 is where that leaves it.
     """
-    turn = Rotation.from_rotvec([0.0, 0.0, start.heading])
+    turn = transform.Rotation.from_rotvec([0.0, 0.0, start.heading])
     position = turn.apply(position) + np.asarray(start.position)
     return Footfalls.at(t, position, heading_of(quaternion) + start.heading)
 
@@ -207,7 +209,7 @@ def scores(recording: Recording, rest: Rest, detector: Detector, still: int) -> 
 
     still : rows 1 to `still` are at rest, whatever the detector thinks of them
     """
-    gyro = less(compact(recording.gyro)[1:], rest.gyro_bias)
+    gyro = _detection.less(compact(recording.gyro)[1:], rest.gyro_bias)
     score = np.empty(len(recording.t))
     score[1:] = detector(recording.t[1:], gyro, recording.accel[1:])
     np.minimum(score[1 : still + 1], 0.5, out=score[1 : still + 1])

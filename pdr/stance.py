@@ -8,8 +8,10 @@ from typing import Protocol
 
 import numpy as np
 
-from footfall.pdr import _detection
+from footfall.late import late
 from footfall.settings import require, setting
+
+_detection = late("footfall.pdr._detection")
 
 
 class Detector(Protocol):

@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from footfall.errors import InputError
-from footfall.pdr import _kernels
+from footfall.late import late
+
+_kernels = late("footfall.pdr._kernels")
 
 ORIGIN = (0.0, 0.0, 0.0)
 

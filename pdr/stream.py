@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from footfall.errors import InputError
-from footfall.pdr import _kernels
+from footfall.late import late
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.reckoning import (
     PdrParams,
@@ -22,6 +22,8 @@ from footfall.pdr.rest import Rest, static_bias
 from footfall.pdr.stance import compact, find_stances
 from footfall.recording import Recording
 from footfall.runs import runs
+
+_kernels = late("footfall.pdr._kernels")
 
 WORK_ROWS = 1 << 16  # samples that are worth looking at anew
 MOST_ROWS = 1 << 19  # samples that may wait for a stance

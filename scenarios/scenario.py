@@ -15,8 +15,8 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from footfall.conventions import BIAS_TIME
 from footfall.errors import InputError
-from footfall.models.body import MOUNTS
 from footfall.models.imu import TemperatureProfile, load_spec, stock_specs
+from footfall.models.mount import MOUNTS
 from footfall.models.subject import SHOES, SUBJECTS, Subject
 from footfall.scenarios.path import Path, PathSpec, build_path
 from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height

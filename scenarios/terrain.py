@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator
-from scipy.spatial import cKDTree
 
 from footfall.errors import InputError
-from footfall.models.body import Ground
+from footfall.late import late
+from footfall.models.route import Ground
 from footfall.scenarios.path import Path, elevation, plan
+
+interpolate, spatial = late("scipy.interpolate"), late("scipy.spatial")
 
 # Two stretches of one path may come this close to each other only at the same height.
 CLEARANCE_M = 3.0
@@ -77,10 +78,12 @@ def require_one_height(path: Path) -> None:
     InputError
         Two stretches within 3 m of each other differ by more than 5 cm.
     """
+    if path.level:
+        return
     r = path.route
     stride = max(1, round(_SAMPLE_M * (len(r.s) - 1) / r.length))
     s, z, points = r.s[::stride], r.z[::stride], np.column_stack([r.x, r.y])[::stride]
-    i, j = cKDTree(points).query_pairs(CLEARANCE_M, output_type="ndarray").T
+    i, j = spatial.cKDTree(points).query_pairs(CLEARANCE_M, output_type="ndarray").T
     along = np.abs(s[i] - s[j])
     if path.closed:
         along = np.minimum(along, r.length - along)
@@ -130,7 +133,7 @@ def build_terrain(path: Path, cell: float = 0.5) -> Terrain | None:
     xs, ys = low[0] + cell * np.arange(nx), low[1] + cell * np.arange(ny)
     heights = _far(line, xs, ys)
 
-    tree = cKDTree(line.points)
+    tree = spatial.cKDTree(line.points)
     grid = np.stack(np.meshgrid(xs, ys), axis=-1)
     distance = np.reshape(tree.query(grid.reshape(-1, 2), distance_upper_bound=_NEAR_M)[0], (ny, nx))
     near = distance < _NEAR_M
@@ -188,5 +191,5 @@ def _far(line: _Line, xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
     grid = np.stack(np.meshgrid(*coarse), axis=-1)
     every = np.arange(0, len(line.z), round(2 / _SAMPLE_M))
     heights = np.array([_blend(line, row, every, along=0.0) for row in grid])
-    fine = RegularGridInterpolator((coarse[1], coarse[0]), heights)
+    fine = interpolate.RegularGridInterpolator((coarse[1], coarse[0]), heights)
     return fine(tuple(np.meshgrid(ys, xs, indexing="ij")))

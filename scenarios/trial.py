@@ -30,7 +30,6 @@ from footfall.recording import Recording
 from footfall.scenarios.judge.score import Score, score
 from footfall.scenarios.scenario import Scenario
 from footfall.simulate.budget import DriftBudget
-from footfall.simulate.cache import cached_walk
 from footfall.simulate.plan import Plan
 from footfall.simulate.record import record, record_with_budget
 from footfall.simulate.walk import Walk
@@ -255,6 +254,10 @@ def walk_of(
     FallError, StrayError
         The walker did not reach the end.
     """
+    from footfall.simulate.cache import (
+        cached_walk,
+    )  # the physics, which its documents and settings do without
+
     return cached_walk(trial.plan, folder=folder, on_progress=on_progress)
 
 

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from footfall.errors import InputError
-from footfall.simulate._budget_kernels import compose
+from footfall.late import late
 from footfall.simulate.walk import Walk
 from footfall.tables import write_table
+
+_kernels, transform = late("footfall.simulate._budget_kernels"), late("scipy.spatial.transform")
 
 
 @dataclass(frozen=True)
@@ -61,10 +62,10 @@ def drift_budget(walk: Walk, signals: Iterable[tuple[str, np.ndarray]], bias_tim
     still = slice(0, max(1, round(bias_time / walk.interval)))
     edges = np.rint((walk.footfalls.t - walk.t[0]) / walk.interval).astype(np.int64)
     interval = np.diff(walk.t[edges])
-    start = Rotation.from_quat(walk.quaternion[edges[:-1]], scalar_first=True)
+    start = transform.Rotation.from_quat(walk.quaternion[edges[:-1]], scalar_first=True)
 
-    def turned(rate: np.ndarray) -> Rotation:
-        return Rotation.from_quat(compose(rate, walk.interval, edges), scalar_first=True)
+    def turned(rate: np.ndarray) -> Any:
+        return transform.Rotation.from_quat(_kernels.compose(rate, walk.interval, edges), scalar_first=True)
 
     back = (start * turned(walk.gyro)).inv()
     previous, total = walk.gyro, np.zeros(len(interval))

@@ -18,8 +18,8 @@ import numpy as np
 
 from footfall.errors import InputError
 from footfall.models import body
-from footfall.models.body import Ground, build_body
-from footfall.models.route import Route
+from footfall.models.body import build_body
+from footfall.models.route import Ground, Route
 from footfall.models.subject import Build
 from footfall.simulate.walker.walkers import CONTROL_INTERVAL, Walkers
 

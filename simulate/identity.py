@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib.metadata import version
 
 from footfall.identity import WalkIdentity, digest_of, plain
-from footfall.models.body import MOUNTS, Mount
+from footfall.models.mount import MOUNTS, Mount
 from footfall.models.policy import Policy
 from footfall.simulate.plan import Plan
 from footfall.sources import stage_digest

@@ -9,8 +9,8 @@ from importlib.metadata import version
 
 import footfall
 from footfall.identity import digest_of
-from footfall.models.body import Ground, Mount
-from footfall.models.route import Route
+from footfall.models.mount import Mount
+from footfall.models.route import Ground, Route
 from footfall.models.subject import Subject
 
 PHYSICS_STEP = 0.001  # s, of the subject's time

@@ -6,15 +6,17 @@ from collections.abc import Collection, Iterator
 from dataclasses import asdict
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from footfall.conventions import BIAS_TIME
 from footfall.identity import WALK, digest_of
+from footfall.late import late
 from footfall.models.imu import ROOM, ImuUnit, TemperatureProfile
 from footfall.models.imu.effects import Channel, sensed, stages
 from footfall.recording import Recording
 from footfall.simulate.budget import DriftBudget, drift_budget
 from footfall.simulate.walk import Walk
+
+transform = late("scipy.spatial.transform")
 
 
 def record(
@@ -90,7 +92,11 @@ def record_with_budget(
 
 def _shift(gyro: np.ndarray, walk: Walk, bias_shift: float) -> None:
     """Add a bias of `bias_shift` rad/s about the vertical, from the first step on, to the gyro (n, 3)."""
-    up = Rotation.from_quat(walk.quaternion[0], scalar_first=True).inv().apply([0.0, 0.0, bias_shift])
+    up = (
+        transform.Rotation.from_quat(walk.quaternion[0], scalar_first=True)
+        .inv()
+        .apply([0.0, 0.0, bias_shift])
+    )
     first = int(np.searchsorted(walk.t - walk.t[0], walk.calibration_s + 1e-6, side="right"))
     gyro[first:] += up
 

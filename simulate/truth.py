@@ -15,8 +15,10 @@ import numpy as np
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
+from footfall.late import late
 from footfall.runs import runs
-from footfall.simulate._truth_kernels import increments
+
+_kernels = late("footfall.simulate._truth_kernels")
 
 # The foot is at rest on the ground: it carries load while the IMU neither travels nor turns fast.
 REST_SPEED = 0.20  # m/s
@@ -79,7 +81,7 @@ def imu_truth(position: np.ndarray, quaternion: np.ndarray, physics_step: float,
     velocity = (later - earlier) / interval
 
     gained = np.diff(velocity, axis=0) + np.array([0, 0, GRAVITY * interval])
-    turn, force = increments(quaternion[index], gained)
+    turn, force = _kernels.increments(quaternion[index], gained)
     return ImuTruth(
         index=index[1:],
         position=position[index[1:]],

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
 from footfall.models import body
-from footfall.models.body import MOUNTS, Mount
+from footfall.models.mount import MOUNTS, Mount
 from footfall.models.policy import Policy, stock_policy
 from footfall.models.subject import SUBJECTS
 from footfall.recording import Recording

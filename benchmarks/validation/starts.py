@@ -26,8 +26,8 @@ from rich.table import Table
 from benchmarks._common import options, out, run_all, write_json
 from footfall.conventions import GRAVITY
 from footfall.models import body
-from footfall.models.body import Ground
 from footfall.models.policy import stock_policy
+from footfall.models.route import Ground
 from footfall.models.subject import draw_subject
 from footfall.scenarios.path import PathSpec, build_path
 from footfall.simulate.episode import FallError, stroll

@@ -17,7 +17,7 @@ import numpy as np
 from rich.table import Table
 
 from benchmarks._common import options, out, run_all, write_json
-from footfall.models.body import Ground
+from footfall.models.route import Ground
 from footfall.models.subject import draw_subject
 from footfall.runs import runs
 from footfall.scenarios.path import PathSpec, build_path

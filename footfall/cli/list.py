@@ -9,20 +9,22 @@ from footfall.cli.terminal import OUT, print_json
 def list_(as_json: JsonOption = False) -> None:
     """Show what comes with Footfall: scenarios, IMUs, methods, detectors, mounts and sensor effects."""
     from footfall.hdr.methods import METHODS
-    from footfall.models.body import MOUNTS
     from footfall.models.imu import EFFECTS, load_spec, stock_specs
+    from footfall.models.mount import MOUNTS
     from footfall.pdr.detectors import DETECTORS, summary
+    from footfall.scenarios.path import build_path
     from footfall.scenarios.report.tables import new_table, titled
-    from footfall.scenarios.scenario import load_scenario, stock_scenarios
+    from footfall.scenarios.scenario import ScenarioFile, read_document, stock_scenarios
+    from footfall.toml import checked
 
-    scenarios = {name: load_scenario(name) for name in stock_scenarios()}
+    scenarios = {name: checked(read_document(name).table, ScenarioFile, name) for name in stock_scenarios()}
     imus = {name: load_spec(name).name for name in stock_specs()}
     methods = {name: method.description for name, method in METHODS.items()}
     detectors = {name: summary(found) for name, found in DETECTORS.items()}
     if as_json:
         print_json(
             {
-                "scenarios": {name: scenario.file.description for name, scenario in scenarios.items()},
+                "scenarios": {name: scenario.description for name, scenario in scenarios.items()},
                 "imus": imus,
                 "methods": methods,
                 "detectors": detectors,
@@ -33,8 +35,8 @@ def list_(as_json: JsonOption = False) -> None:
         return
     table = new_table("name", "what", "length\nm", "pace\nm/s", "walks", left=2)
     for name, scenario in scenarios.items():
-        length, pace = f"{scenario.path.route.length:.0f}", f"{scenario.gait.pace_m_s:g}"
-        table.add_row(name, scenario.file.description, length, pace, f"{scenario.seeds.walks}")
+        length, pace = f"{build_path(scenario.path).route.length:.0f}", f"{scenario.gait.pace_m_s:g}"
+        table.add_row(name, scenario.description, length, pace, f"{scenario.seeds.walks}")
     OUT.print(titled("Scenarios", table))
     for title, rows in (
         ("IMUs", imus),

@@ -52,7 +52,7 @@ def walk(
     """
     from dataclasses import replace
 
-    from footfall.models.body import MOUNTS
+    from footfall.models.mount import MOUNTS
     from footfall.scenarios.parameters import documents, parsed, require_areas, with_values
     from footfall.simulate.cache import cached_walk
     from footfall.simulate.plan import PHYSICS_STEP

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from footfall.runs import runs
 
@@ -40,6 +39,8 @@ def restored(channel: np.ndarray, clipped: np.ndarray) -> np.ndarray:
 
     Of seven real walks clipped on purpose at 300 to 450 deg/s, dead reckoning's error more than halves.
     """
+    from scipy.interpolate import CubicHermiteSpline  # slow to import, and few sensors are clipped
+
     channel = channel.copy()
     for start, stop in clipped:
         if start < 2 or stop > len(channel) - 2:

@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
-from scipy.signal import find_peaks
-from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
@@ -166,9 +164,35 @@ def _unrest(recording: Recording) -> np.ndarray:
 
 def rests_of(recording: Recording) -> np.ndarray:
     """Samples at the stillest instants, at least half a second apart."""
-    still = _unrest(recording)
-    apart = max(1, round(0.5 / recording.interval))
-    return find_peaks(-still, height=-REST, distance=apart)[0]
+    return lowest(_unrest(recording), REST, max(1, round(0.5 / recording.interval)))
+
+
+def lowest(x: np.ndarray, most: float, apart: int) -> np.ndarray:
+    """Local minima of (n,) `x` of `most` at most: the lowest first, no other within `apart` samples of it.
+
+    As `scipy.signal.find_peaks(-x, height=-most, distance=apart)`, whose import takes longer than all
+    else that is done to a recording.
+    """
+    first = np.concatenate([[0], np.flatnonzero(np.diff(x)) + 1])  # of each run of equal samples
+    last = np.append(first[1:], len(x)) - 1
+    low = x[first]
+    inside = (low[1:-1] < low[:-2]) & (low[1:-1] < low[2:]) & (low[1:-1] <= most)
+    at = ((first + last) // 2)[1:-1][inside]
+    kept = np.ones(len(at), dtype=bool)
+    for i in np.argsort(-x[at])[::-1]:
+        if kept[i]:
+            near = slice(np.searchsorted(at, at[i] - apart, side="right"), np.searchsorted(at, at[i] + apart))
+            kept[near] = False
+            kept[i] = True
+    return at[kept]
+
+
+def upright(up: np.ndarray) -> np.ndarray:
+    """An attitude (4,) in which `up` (3,), of any length, points up."""
+    x, y, z = up / np.linalg.norm(up)
+    # The shortest turn; from below, after half a turn about x.
+    quaternion = np.array([1 + z, y, -x, 0.0] if z >= 0 else [y, 1 - z, 0.0, x])
+    return quaternion / np.linalg.norm(quaternion)
 
 
 def misclosure(recording: Recording, rests: np.ndarray, change: np.ndarray) -> float | None:
@@ -185,9 +209,7 @@ def misclosure(recording: Recording, rests: np.ndarray, change: np.ndarray) -> f
         if not 0.4 < duration < 2.0 or np.ptp(np.linalg.norm(force, axis=1)) < 3.0:
             continue
         up = recording.accel[max(0, first - margin) : first + margin + 1].mean(axis=0)
-        level, _ = Rotation.align_vectors([[0.0, 0.0, 1.0]], [up])
-        quaternion = level.as_quat(scalar_first=True)
-        _, _, velocity = integrate(t, gyro[first : last + 1], force, quaternion=quaternion)
+        _, _, velocity = integrate(t, gyro[first : last + 1], force, quaternion=upright(up))
         left.append(float(np.linalg.norm(velocity[-1])) / (GRAVITY * duration))
         if len(left) == STRIDES[1]:
             break

@@ -11,15 +11,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.csv as pa_csv
-import pyarrow.parquet as pq
 
 from footfall.errors import InputError
 from footfall.formats.layout import LAYOUTS, Layout
 from footfall.formats.samples import TORN, Samples, Source
+from footfall.late import late
 from footfall.recording import ACCEL, GYRO, refuse_truth
-from footfall.tables import META_KEY
+from footfall.tables import META_KEY, numbers
+
+pa, pa_csv, pq = late("pyarrow"), late("pyarrow.csv"), late("pyarrow.parquet")
 
 BLOCK_BYTES = 1 << 22
 BLOCK_ROWS = 1 << 16
@@ -187,8 +187,7 @@ def _parquet(path: Path, file: Any, wanted: Sequence[str]) -> Iterator[dict[str,
 
 
 def _numbers(column: Any) -> np.ndarray:
-    # Nulls become NaN. A copy: Arrow's memory is read-only, and would be held as long as the array.
-    return np.array(column.to_numpy(zero_copy_only=False), dtype=float)
+    return numbers([column]).astype(float, copy=False)
 
 
 def _meta(path: Path, file: Any) -> dict[str, Any]:

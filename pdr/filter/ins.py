@@ -14,9 +14,11 @@ import numpy as np
 
 from footfall.conventions import GRAVITY, heading_of
 from footfall.errors import InputError
-from footfall.pdr.filter import _kernels as kernels
+from footfall.late import late
 from footfall.pdr.strapdown import ORIGIN
 from footfall.settings import require, setting
+
+kernels = late("footfall.pdr.filter._kernels")
 
 POSITION, VELOCITY, ATTITUDE = slice(0, 3), slice(3, 6), slice(6, 9)
 ACCEL_BIAS, GYRO_BIAS, G_SENSITIVITY = slice(9, 12), slice(12, 15), slice(15, 24)

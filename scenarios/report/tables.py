@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.box import SIMPLE_HEAD
@@ -13,9 +13,11 @@ from rich.text import Text
 
 from footfall.scenarios.judge.papers import HDR_TABLE_2, HDR_TABLE_2_MEAN, IHDE_TABLE_2, range_text
 from footfall.scenarios.judge.score import Align, Score, improvement, mean_score
-from footfall.scenarios.path import Path
-from footfall.scenarios.run import Result
 from footfall.simulate.plan import versions
+
+if TYPE_CHECKING:
+    from footfall.scenarios.path import Path
+    from footfall.scenarios.run import Result
 
 _ERRORS = ("heading_error_final_deg", "heading_error_mean_deg")
 

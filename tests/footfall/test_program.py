@@ -1,5 +1,6 @@
 """The command as a program of its own: exit codes, streams, workers, and what importing it loads."""
 
+import json
 import os
 import shlex
 import signal
@@ -81,16 +82,48 @@ def test_workers_end_with_their_parent(here, ending):
     wait_until(lambda: not members(process.pid))
 
 
-def test_importing_the_command_line_loads_nothing_heavy():
-    """Neither the learner nor pictures nor the physics with its graphics, and no room by its bare name."""
-    heavy = ("torch", "matplotlib", "OpenGL", "glfw", "mujoco", "numba", "scipy")
-    rooms = ("models", "simulate", "pdr", "hdr", "scenarios")
-    code = (
-        "import sys, footfall, footfall.cli.app\n"
-        f"print([name for name in sys.modules if name.split('.')[0] in {heavy + rooms!r}])"
+def loaded(code, folder):
+    """Modules that a fresh process has loaded at the end."""
+    code += "\nimport json, sys\nprint(json.dumps(sorted(sys.modules)))"
+    found = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True)
+    assert found.returncode == 0, found.stderr
+    return json.loads(found.stdout.splitlines()[-1])
+
+
+def of(packages, modules):
+    """Those of `modules` that belong to these packages."""
+    return [name for name in modules if any(f"{name}.".startswith(f"{package}.") for package in packages)]
+
+
+# What takes a tenth of a second or more to import.
+HEAVY = {"numba", "scipy", "mujoco", "gymnasium", "matplotlib", "torch", "pandas", "plotly"}
+
+
+def test_importing_the_command_line_loads_nothing_heavy(tmp_path):
+    """Nor a room, by whichever name."""
+    rooms = {"models", "simulate", "pdr", "hdr", "scenarios"}
+    modules = loaded("import footfall.cli.app", tmp_path)
+    assert (
+        of(HEAVY | {"numpy", "pyarrow", "pydantic"} | rooms | {f"footfall.{room}" for room in rooms}, modules)
+        == []
     )
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert found.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize(
+    ("line", "needed"),
+    [
+        ("list", set()),
+        ("list --json", set()),
+        ("parameters", {"scipy"}),
+        ("score hdr.parquet walk.parquet", set()),
+        ("export hdr.parquet -o hdr.tum", set()),
+        ("track rec.parquet -o again.parquet", {"numba", "scipy"}),
+    ],
+)
+def test_a_short_command_loads_only_what_it_needs(here, line, needed):
+    modules = loaded(f"from footfall.cli.app import main\nassert main({shlex.split(line)!r}) == 0", here)
+    assert of(HEAVY - needed, modules) == []
+    assert of({"scipy.signal", "scipy.stats", "scipy.optimize", "scipy.interpolate"}, modules) == []
 
 
 def test_no_module_imports_a_room_by_its_bare_name_nor_pictures_nor_the_learner():

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from footfall.errors import InputError
-from footfall.tables import META_KEY, UNITS_KEY, read_table, replacing, require_columns, write_table
+from footfall.tables import META_KEY, UNITS_KEY, numbers, read_table, replacing, require_columns, write_table
 
 names = st.text(st.characters(codec="utf-8", exclude_characters="\0"), min_size=1, max_size=12)
 kinds = st.sampled_from([np.float64, np.float32, np.int64, np.int32, np.uint8, np.bool_])
@@ -66,6 +66,20 @@ def test_columns_may_be_slices_of_something_larger(tmp_path):
     back, _ = read_table(tmp_path / "x.parquet")
     assert back["a"].tolist() == [1, 4, 7, 10]
     assert back["b"].tolist() == [11, 8, 5, 2]
+
+
+ARROW = st.sampled_from([pa.float64(), pa.float32(), pa.int64(), pa.uint8(), pa.bool_()])
+
+
+@given(ARROW, st.lists(st.lists(st.none() | st.integers(0, 1), max_size=20), max_size=3), st.data())
+def test_numbers_are_those_of_arrow(kind, parts, data):
+    """Nulls, slices that begin within a byte of bits, no rows, no parts."""
+    arrays = [pa.array(part, pa.int64()).cast(kind) for part in parts]
+    arrays = [array.slice(data.draw(st.integers(0, len(array)))) for array in arrays]
+    expected = [array.to_numpy(zero_copy_only=False).astype(float) for array in arrays]
+    found = numbers(arrays)
+    np.testing.assert_array_equal(found, np.concatenate(expected) if expected else [])
+    assert found.flags.writeable
 
 
 def test_a_csv_reads_like_a_parquet_file(tmp_path):

@@ -7,8 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from footfall.errors import InputError
-from footfall.models.body import JOINTS, MOUNTS, N_JOINTS, SERVO_JOINT, SERVOS, Ground, Mount, build_body
+from footfall.models.body import JOINTS, N_JOINTS, SERVO_JOINT, SERVOS, build_body
 from footfall.models.gait import TABLE, reference_angles
+from footfall.models.mount import MOUNTS, Mount
+from footfall.models.route import Ground
 from footfall.models.subject import Build, Subject, draw_subject
 
 STEP = 0.001

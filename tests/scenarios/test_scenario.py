@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from footfall.errors import InputError
-from footfall.models.body import MOUNTS
 from footfall.models.imu import TemperatureProfile, load_spec
 from footfall.models.imu.spec import SHEETS
+from footfall.models.mount import MOUNTS
 from footfall.scenarios.path import MIN_RADIUS_M
 from footfall.scenarios.scenario import (
     STOCK,

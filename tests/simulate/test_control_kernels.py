@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
-from footfall.models.body import SENSOR_FOOT_POSITION, SENSOR_TOUCH, Ground, build_body
+from footfall.models.body import SENSOR_FOOT_POSITION, SENSOR_TOUCH, build_body
 from footfall.models.ground import N_PLANES, ground_lookup, tread
 from footfall.models.policy import Policy, stock_policy
+from footfall.models.route import Ground
 from footfall.models.subject import Build, Habits
 from footfall.simulate.walker import (
     _balance_kernels,

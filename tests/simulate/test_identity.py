@@ -9,9 +9,10 @@ import pytest
 from footfall.errors import InputError
 from footfall.hdr.methods import METHODS, Reckoning, tracks
 from footfall.identity import WalkIdentity, digest_of, plain
-from footfall.models.body import MOUNTS, Ground, Mount
 from footfall.models.imu import draw_unit, load_spec
+from footfall.models.mount import MOUNTS, Mount
 from footfall.models.policy import stock_policy
+from footfall.models.route import Ground
 from footfall.models.subject import Subject
 from footfall.pdr.detectors import DETECTORS
 from footfall.pdr.reckoning import PdrParams

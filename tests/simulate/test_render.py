@@ -13,8 +13,8 @@ import pytest
 from PIL import Image
 
 from footfall.errors import InputError
-from footfall.models.body import Ground
 from footfall.models.policy import stock_policy
+from footfall.models.route import Ground
 from footfall.simulate.draw import SIDE_VIEW, Stage, has_screen
 from footfall.simulate.episode import Episode
 from footfall.simulate.plan import Plan

@@ -15,13 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
-from footfall.models.body import (
-    N_SERVOS,
-    SENSOR_FOOT_POSITION,
-    SENSOR_FOOT_RATE,
-    SENSOR_TOUCH,
-    build_body,
-)
+from footfall.models.body import N_SERVOS, SENSOR_FOOT_POSITION, SENSOR_FOOT_RATE, SENSOR_TOUCH, build_body
 from footfall.models.ground import GroundLookup
 from footfall.models.policy import load_policy, stock_policy
 from footfall.models.subject import Build, Habits

@@ -7,9 +7,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from footfall.errors import InputError
-from footfall.models.body import MOUNTS, Ground
+from footfall.models.mount import MOUNTS
 from footfall.models.policy import Policy, stock_policy
-from footfall.models.route import Route
+from footfall.models.route import Ground, Route
 from footfall.models.subject import Subject
 from footfall.pdr.strapdown import integrate
 from footfall.runs import runs
