@@ -191,7 +191,7 @@ def _pickles(method: Method, one: Case, other: Case) -> None:
         reason = (str(error).strip().splitlines() or [""])[0]
         raise Failed(f"it does not reach another process: {type(error).__name__}: {reason}") from error
     if there != here:
-        raise Failed("its track in another process is another one: it keeps something from one recording")
+        raise Failed("its track in another process is another one: it draws lots, or keeps something")
 
 
 def _elsewhere(method: Method, case: Case) -> bytes:
@@ -265,6 +265,8 @@ def _at_half_rate(method: Method, case: Case) -> None:
 def _short(method: Method, case: Case) -> None:
     try:
         made = _track(method, case._replace(recording=_rows(case.recording, np.arange(2))))
+    except Failed as failed:
+        raise Failed(f"of a recording of two samples, expected a ValueError: {failed}") from None
     except InputError as error:
         cause = error.__cause__
         if cause is None or isinstance(cause, ValueError):

@@ -16,6 +16,7 @@ import typer
 from footfall import __version__
 from footfall.cli.allan import allan
 from footfall.cli.cache import cache
+from footfall.cli.check import check
 from footfall.cli.export import export
 from footfall.cli.list import list_
 from footfall.cli.parameters import parameters
@@ -54,7 +55,7 @@ def _main(
         print(context.get_help())
 
 
-for command in (list_, parameters, run, walk, render, record, track, score, export, allan):
+for command in (list_, parameters, run, walk, render, record, track, score, check, export, allan):
     app.command(command.__name__.rstrip("_"))(command)
 app.add_typer(cache, name="cache")
 
