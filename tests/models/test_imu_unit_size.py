@@ -31,7 +31,7 @@ CONSTANTS = {
     "temperature2": "temperature2_sigma",
 }
 ALL = TriadSpec(
-    range=4.0, bandwidth=50.0, resolution=0.01, white=0.01, flicker=0.1, random_walk=0.1, turn_on_sigma=0.3,
+    range=4.0, bandwidth=30.0, resolution=0.01, white=0.01, flicker=0.1, random_walk=0.1, turn_on_sigma=0.3,
     scale_sigma=0.01, misalignment_sigma=0.02, non_linearity_sigma=0.01, g_sigma=0.01, g2_sigma=1e-3,
     temperature_sigma=0.01, temperature2_sigma=1e-3,
 )  # fmt: skip
