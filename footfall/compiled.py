@@ -1,21 +1,27 @@
-"""Compiled kernels are never older than what they were compiled from."""
+"""Compiled kernels, kept on disk and never older than what they were compiled from."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Callable
+from typing import Any
+
+from numba import njit
+
+from footfall.sources import modules_digest
 
 
-def forget_stale(*rooms: Path) -> None:
-    """Drop numba's cache of these folders' kernels where any of their sources is newer.
+def kernel(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """`numba.njit(cache=True)`, whose cache holds for as long as nothing changes that made the code.
 
-    numba looks only at the file that a kernel stands in. What the kernel calls or reads elsewhere may have
-    changed since, as after an update of a checkout, and would silently stay as it was.
+    numba itself compares the time and size of the file that a kernel stands in. What the kernel calls or
+    reads elsewhere may have changed since, as after an update of a checkout, and would silently stay as it
+    was. So the stamp in numba's index is the content of that module and of all that it imports.
     """
-    sources = [path.stat().st_mtime for room in rooms for path in room.rglob("*.py")]
-    for room in rooms:
-        for index in room.rglob("__pycache__/*.nbi"):
-            try:
-                if index.stat().st_mtime < max(sources):
-                    index.unlink()
-            except OSError:  # another process was faster, or the installation is not ours to change
-                pass
+
+    def compiled(function: Callable[..., Any]) -> Any:
+        dispatcher = njit(cache=True, **options)(function)
+        if hasattr(dispatcher, "_cache"):  # not where NUMBA_DISABLE_JIT is set
+            dispatcher._cache._cache_file._source_stamp = modules_digest(function.__module__)
+        return dispatcher
+
+    return compiled

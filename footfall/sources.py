@@ -7,6 +7,7 @@ new module in a subfolder is not forgotten.
 from __future__ import annotations
 
 import ast
+import hashlib
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
@@ -22,8 +23,8 @@ STAGES = {
     "track": ("footfall.hdr.methods",),
     "score": ("footfall.scenarios.judge.score",),
 }
-# What is imported and changes no number: messages, the format of files, and what is only seen.
-NO_PART = frozenset({"footfall.errors", "footfall.tables", "footfall.models.appearance"})
+# What is imported and changes no number: messages, the format of files, what is only seen, and this file.
+NO_PART = frozenset({"footfall.errors", "footfall.tables", "footfall.models.appearance", "footfall.sources"})
 
 _ROOT = Path(footfall.__file__).parent
 
@@ -31,7 +32,12 @@ _ROOT = Path(footfall.__file__).parent
 @lru_cache
 def stage_digest(stage: str) -> str:
     """SHA-256 of the sources of one of `STAGES`."""
-    return digest_of({module: file_of(module).read_bytes() for module in modules_of(*STAGES[stage])})
+    return modules_digest(*STAGES[stage])
+
+
+def modules_digest(*roots: str) -> str:
+    """SHA-256 of the sources of these modules and of all that they import of Footfall."""
+    return digest_of({module: _content(module) for module in modules_of(*roots)})
 
 
 @lru_cache
@@ -60,6 +66,11 @@ def file_of(module: str) -> Path:
 def imports_of(module: str) -> tuple[str, ...]:
     """The modules of Footfall that a module imports, anywhere in it; not those for its types alone."""
     return tuple(dict.fromkeys(_imported(ast.parse(file_of(module).read_bytes()))))
+
+
+@lru_cache
+def _content(module: str) -> str:
+    return hashlib.sha256(file_of(module).read_bytes()).hexdigest()
 
 
 def _imported(node: ast.AST) -> Iterator[str]:

@@ -8,10 +8,11 @@ the faces refuse the zeros.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from footfall.compiled import kernel
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def filter_twice(raw, interval, tau):  # type: ignore[no-untyped-def]
     """w2 of HDR Eq. 6a-6b, (n,); row 0 is the start."""
     n = len(raw)
@@ -25,7 +26,7 @@ def filter_twice(raw, interval, tau):  # type: ignore[no-untyped-def]
     return twice
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def control(twice, interval, heading, tau, i_c, theta_w):  # type: ignore[no-untyped-def]
     """Headings (n, sets) of HDR Eq. 7-11 for parameter sets that share tau.
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from footfall.compiled import kernel
 from footfall.models import body
 
 _FOOT, _TOUCH = body.SENSOR_FOOT_POSITION.start, body.SENSOR_TOUCH.start
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def bilinear(heights, x0, y0, cell, x, y):  # type: ignore[no-untyped-def]
     """Height (n,) and gradient (n, 2) at x, y (n,); beyond the grid that of its edge."""
     rows, columns = heights.shape
@@ -28,7 +28,7 @@ def bilinear(heights, x0, y0, cell, x, y):  # type: ignore[no-untyped-def]
     return height, gradient
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def lay(planes, sensor, height, gradient):  # type: ignore[no-untyped-def]
     """Pose the planes (n, 14) of unloaded feet by the height (2n,) and gradient (2n, 2) where they are."""
     for i in range(len(planes)):

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from footfall.compiled import kernel
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def perceptron(x, sizes, parameters, out):  # type: ignore[no-untyped-def]
     """Fill `out` (n, sizes[-1]) from x (n, sizes[0]); ELU between the layers.
 
@@ -30,4 +31,5 @@ def perceptron(x, sizes, parameters, out):  # type: ignore[no-untyped-def]
                 for j in range(outputs):
                     there[j] = there[j] if there[j] > 0 else math.expm1(there[j])
             here, at = there, at + (inputs + 1) * outputs
-        out[i] = here
+        for j in range(len(here)):  # to assign the slice would compile numba's words on shapes that differ
+            out[i, j] = here[j]

@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from footfall.compiled import kernel
 from footfall.conventions import GRAVITY
 
 SLACK = 1e-6  # s; stamps are decimal numbers: a sample on the window's edge counts
@@ -18,7 +18,7 @@ BARELY = math.nextafter(1.0, 0.0)  # at rest, but no candidate for the quietest 
 _PART = 256  # samples: divisions and roots of so many are taken side by side
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def less(values, bias):  # type: ignore[no-untyped-def]
     """(n, 3) values less (3,) bias."""
     out = np.empty(values.shape)
@@ -28,14 +28,14 @@ def less(values, bias):  # type: ignore[no-untyped-def]
     return out
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(nogil=True, error_model="numpy")
 def _size(x, y, z, count):  # type: ignore[no-untyped-def]
     """Length of the mean of `count` vectors, from their sum."""
     x, y, z = x / count, y / count, z / count
     return math.sqrt(x * x + y * y + z * z)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(nogil=True, error_model="numpy")
 def threshold(t, gyro, accel, window_s, gyro_max, accel_max):  # type: ignore[no-untyped-def]
     """Score (n,) of `ThresholdDetector`, and whether all sums were finite: else it means nothing."""
     n, half = len(t), window_s / 2
@@ -67,7 +67,7 @@ def threshold(t, gyro, accel, window_s, gyro_max, accel_max):  # type: ignore[no
     return score, math.isfinite(ax + ay + az + bx + by + bz)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(nogil=True, error_model="numpy")
 def means(t, gyro, accel, window_s):  # type: ignore[no-untyped-def]
     """Over the window that begins at each sample, and whether all sums were finite: else they mean nothing.
 
@@ -94,7 +94,7 @@ def means(t, gyro, accel, window_s):  # type: ignore[no-untyped-def]
     return out, math.isfinite(total[n].sum())
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def held(t, value, window_s):  # type: ignore[no-untyped-def]
     """Score (n,) from the value of the window that begins at each sample.
 
@@ -114,7 +114,7 @@ def held(t, value, window_s):  # type: ignore[no-untyped-def]
     return score
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def stances(t, score, min_stance_s, min_stride_s, reset_s):  # type: ignore[no-untyped-def]
     """Samples of the instants of zero velocity, and which of them are footfalls (`stance.Stances`)."""
     n = len(t)

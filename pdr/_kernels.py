@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from footfall.compiled import kernel
 from footfall.conventions import GRAVITY
 
 
-@njit(cache=True)
+@kernel()
 def multiply(a, b):  # type: ignore[no-untyped-def]
     """Hamilton product of two quaternions, scalar first."""
     return (
@@ -24,7 +24,7 @@ def multiply(a, b):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True)
+@kernel()
 def exponential(x, y, z):  # type: ignore[no-untyped-def]
     """Quaternion of the rotation vector (x, y, z)."""
     half = 0.5 * math.sqrt(x * x + y * y + z * z)
@@ -32,7 +32,7 @@ def exponential(x, y, z):  # type: ignore[no-untyped-def]
     return math.cos(half), scale * x, scale * y, scale * z
 
 
-@njit(cache=True)
+@kernel()
 def rotate(q, x, y, z):  # type: ignore[no-untyped-def]
     """R(q) (x, y, z)."""
     w, a, b, c = q
@@ -40,7 +40,7 @@ def rotate(q, x, y, z):  # type: ignore[no-untyped-def]
     return x + w * tx + b * tz - c * ty, y + w * ty + c * tx - a * tz, z + w * tz + a * ty - b * tx
 
 
-@njit(cache=True)
+@kernel()
 def advance(q, v, p, gyro, accel, dt):  # type: ignore[no-untyped-def]
     """One sample of the pose-increment consumer: v+ = v + R(q Exp(dth/2)) dv + g T, and so on."""
     half = exponential(0.5 * dt * gyro[0], 0.5 * dt * gyro[1], 0.5 * dt * gyro[2])
@@ -54,7 +54,7 @@ def advance(q, v, p, gyro, accel, dt):  # type: ignore[no-untyped-def]
     return (mend * q[0], mend * q[1], mend * q[2], mend * q[3]), w, p
 
 
-@njit(cache=True)
+@kernel()
 def integrate(t, gyro, accel, q0, v0, p0):  # type: ignore[no-untyped-def]
     """Strapdown of samples 1.. from the pose at row 0; returns quaternions, velocities, positions."""
     n = len(t)
@@ -71,7 +71,7 @@ def integrate(t, gyro, accel, q0, v0, p0):  # type: ignore[no-untyped-def]
     return quaternion, velocity, position
 
 
-@njit(cache=True)
+@kernel()
 def reckon(t, gyro, accel, bias, q0, resets, tilt_gain):  # type: ignore[no-untyped-def]
     """Attitude and position at each of `resets`, where the velocity is zero. Explained in reckoning.py.
 
@@ -81,7 +81,8 @@ def reckon(t, gyro, accel, bias, q0, resets, tilt_gain):  # type: ignore[no-unty
     m = len(resets)
     quaternion, position = np.empty((m, 4)), np.zeros((m, 3))
     q = (q0[0], q0[1], q0[2], q0[3])
-    quaternion[0] = q0
+    for i in range(4):  # to assign the slice would compile numba's words on shapes that differ
+        quaternion[0, i] = q[i]
     zero = (0.0, 0.0, 0.0)
     for j in range(1, m):
         first, last = resets[j - 1], resets[j]

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from footfall.compiled import kernel
 
 
-@njit(cache=True)
+@kernel()
 def compose(rate: np.ndarray, interval: float, edges: np.ndarray) -> np.ndarray:
     """Rotation over each stretch of samples: the product of Exp(rate * interval).
 

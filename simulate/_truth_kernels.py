@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from footfall.compiled import kernel
 
 
-@njit(cache=True)
+@kernel()
 def _product(a, b):  # type: ignore[no-untyped-def]
     """Hamilton product, scalar first."""
     return (
@@ -19,14 +20,14 @@ def _product(a, b):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True)
+@kernel()
 def _unit(quaternion):  # type: ignore[no-untyped-def]
     w, x, y, z = quaternion[0], quaternion[1], quaternion[2], quaternion[3]
     norm = math.sqrt(w * w + x * x + y * y + z * z)
     return w / norm, x / norm, y / norm, z / norm
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def increments(quaternion, gained):  # type: ignore[no-untyped-def]
     """Rotation vectors between attitudes, and the velocity gained resolved half-way.
 

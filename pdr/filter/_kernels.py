@@ -14,13 +14,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from footfall.compiled import kernel
 from footfall.conventions import GRAVITY
 from footfall.pdr._kernels import exponential, multiply
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def matrix(q):  # type: ignore[no-untyped-def]
     """The rotation of a quaternion, row by row."""
     w, x, y, z = q
@@ -31,7 +31,7 @@ def matrix(q):  # type: ignore[no-untyped-def]
     )  # fmt: skip
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def _advance_rows(a, c, f, s, dt):  # type: ignore[no-untyped-def]
     """a <- F a (Deng Eq. 9), row by row: each uses rows below it that are still old.
 
@@ -57,7 +57,7 @@ def _advance_rows(a, c, f, s, dt):  # type: ignore[no-untyped-def]
         a[8, k] -= c[6] * wx + c[7] * wy + c[8] * wz
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def _advance_covariance(p, c, f, s, dt):  # type: ignore[no-untyped-def]
     """p <- F p F' (Deng Eq. 12)."""
     _advance_rows(p, c, f, s, dt)
@@ -85,7 +85,7 @@ def _advance_covariance(p, c, f, s, dt):  # type: ignore[no-untyped-def]
             p[k, i] = p[i, k]
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def corrected(x, gyro, accel):  # type: ignore[no-untyped-def]
     """Force and rate that the state makes of a sample: without biases and g-sensitivity."""
     f = (accel[0] - x[10], accel[1] - x[11], accel[2] - x[12])
@@ -96,7 +96,7 @@ def corrected(x, gyro, accel):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def propagate(x, p, phi, gyro, accel, dt, noise, gap):  # type: ignore[no-untyped-def]
     """One sample of strapdown and covariance; `phi` (n, n or 0) gathers the transition.
 
@@ -138,7 +138,7 @@ def propagate(x, p, phi, gyro, accel, dt, noise, gap):  # type: ignore[no-untype
         p[12 + i, 12 + i] += noise[3] * dt
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def _gain(p, h, first, last, variance, gain):  # type: ignore[no-untyped-def]
     """Kalman gain of the scalar measurement h (zero outside first..last-1), into `gain`."""
     n = p.shape[0]
@@ -153,7 +153,7 @@ def _gain(p, h, first, last, variance, gain):  # type: ignore[no-untyped-def]
         gain[i] /= s
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def _joseph(p, h, first, last, variance, gain):  # type: ignore[no-untyped-def]
     """p <- (I - gain h) p (I - gain h)' + gain variance gain': right for any gain."""
     n = p.shape[0]
@@ -170,7 +170,7 @@ def _joseph(p, h, first, last, variance, gain):  # type: ignore[no-untyped-def]
             p[i, k] -= gain[i] * row[k] + left * gain[k]
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def _symmetrise(p):  # type: ignore[no-untyped-def]
     for i in range(p.shape[0]):
         for k in range(i):
@@ -178,7 +178,7 @@ def _symmetrise(p):  # type: ignore[no-untyped-def]
             p[i, k], p[k, i] = mean, mean
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def _take_in(dx, h, first, last, z, gain):  # type: ignore[no-untyped-def]
     """Add to dx what the measurement z = h dx says."""
     for k in range(first, last):
@@ -187,7 +187,7 @@ def _take_in(dx, h, first, last, z, gain):  # type: ignore[no-untyped-def]
         dx[i] += gain[i] * z
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def _with_known(p, row):  # type: ignore[no-untyped-def]
     """p <- what it were if row dx was known."""
     n = p.shape[0]
@@ -206,7 +206,7 @@ def _with_known(p, row):  # type: ignore[no-untyped-def]
                 p[i, k] -= pr[i] * pr[k] / s
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def _with_known_turn(x, p):  # type: ignore[no-untyped-def]
     """p if the heading was known, and whatever the gyro's errors turn about the vertical."""
     n = p.shape[0]
@@ -225,7 +225,7 @@ def _with_known_turn(x, p):  # type: ignore[no-untyped-def]
     return known
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def inject(x, dx):  # type: ignore[no-untyped-def]
     """Add the error to the state; the attitude by C <- exp[dphi x] C (delta = truth - estimate)."""
     for i in range(3):
@@ -240,7 +240,7 @@ def inject(x, dx):  # type: ignore[no-untyped-def]
         x[1 + i] += dx[i]
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def rest(x, p, gyro, accel, velocity_variance, rate_variance, turns):  # type: ignore[no-untyped-def]
     """Zero velocity (Eq. 6, 11), and zero rate where `rate_variance` > 0; returns the error injected.
 
@@ -276,7 +276,7 @@ def rest(x, p, gyro, accel, velocity_variance, rate_variance, turns):  # type: i
     return dx
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def heading_row(x):  # type: ignore[no-untyped-def]
     """d heading / d attitude error: the body's x axis e turns by phi x e, so [-ez ex, -ez ey, h^2] / h^2."""
     m = matrix((x[0], x[1], x[2], x[3]))
@@ -284,7 +284,7 @@ def heading_row(x):  # type: ignore[no-untyped-def]
     return -m[6] * m[0] / level, -m[6] * m[3] / level, 1.0
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def heading(x, p, innovation, variance):  # type: ignore[no-untyped-def]
     """The heading is off by `innovation`, truth - estimate (Eq. 27, 28); returns the error injected."""
     n = p.shape[0]
@@ -298,7 +298,7 @@ def heading(x, p, innovation, variance):  # type: ignore[no-untyped-def]
     return dx
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def run(x, p, phi, before, t, gyro, accel, still, noise, gap, velocity_variance, rate_variance, turns):  # type: ignore[no-untyped-def]
     """All samples in order, each over the interval since the one before; `before` is the state's stamp.
 

@@ -13,9 +13,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numba.extending import register_jitable
 
+from footfall.compiled import kernel
 from footfall.models.body import HIP_HEIGHT, JOINTS, N_SERVOS, SENSOR_FOOT_POSITION
 from footfall.models.gait import INDEX, mask
 from footfall.simulate.walker._elementwise import choose, clip, turned
@@ -292,7 +292,7 @@ def act(s, g, action):  # type: ignore[no-untyped-def]
         s.next_residual[j] = clip(walking + standing, -_RESIDUAL_LIMIT, _RESIDUAL_LIMIT)
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def act_all(state, gains, action):  # type: ignore[no-untyped-def]
     """`act` of every walker; one row of gains serves all."""
     for i in range(len(state)):

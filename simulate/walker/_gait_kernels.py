@@ -7,9 +7,9 @@ argument (`REFERENCE`), not as constants, so that compiled code in numba's cache
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numba.extending import register_jitable
 
+from footfall.compiled import kernel
 from footfall.models import gait
 from footfall.models.body import SERVOS
 from footfall.simulate.walker._elementwise import choose
@@ -128,7 +128,7 @@ def reference(s, ref, stagger, out):  # type: ignore[no-untyped-def]
 # What a kernel fills is passed to it: an array that it returned would cost more than the kernel.
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def stride_all(state, rows):  # type: ignore[no-untyped-def]
     """`stride` of every walker; how many begin a step, and in `rows` (n,) which ones."""
     count = 0
@@ -140,7 +140,7 @@ def stride_all(state, rows):  # type: ignore[no-untyped-def]
     return count
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def targets_all(state, ref, start, out):  # type: ignore[no-untyped-def]
     """`slew`, then `targets` of every walker into `out` (n, k, 17).
 
@@ -159,7 +159,7 @@ def targets_all(state, ref, start, out):  # type: ignore[no-untyped-def]
             start[i, 1 + nq + j] = s.qvel[j]
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def reference_all(state, ref, stagger):  # type: ignore[no-untyped-def]
     """`reference` (n, 17) of every walker."""
     out = np.empty((len(state), len(ref[0].scale)))

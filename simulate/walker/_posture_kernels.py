@@ -6,9 +6,9 @@ Laws in terms of one walker `s` (see state.py); the faces are walkers.py and obs
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numba.extending import register_jitable
 
+from footfall.compiled import kernel
 from footfall.models import body
 from footfall.simulate.walker._elementwise import choose, clip, turned
 from footfall.simulate.walker.state import CREEP
@@ -139,14 +139,14 @@ def observe(s, mirror, sign, own, seen):  # type: ignore[no-untyped-def]
         seen[i] = clip(value, -LIMIT, LIMIT)
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def posture_all(state):  # type: ignore[no-untyped-def]
     """`posture` of every walker."""
     for i in range(len(state)):
         posture(state[i])
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def land_all(state, after, sensor):  # type: ignore[no-untyped-def]
     """Take over the last of the physics states (n, k, 1 + nq + nv) and sensors; `settle` and `posture`."""
     for i in range(len(state)):
@@ -161,7 +161,7 @@ def land_all(state, after, sensor):  # type: ignore[no-untyped-def]
         posture(s)
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def observe_all(state, mirror, sign, seen):  # type: ignore[no-untyped-def]
     """Fill `seen` (n, N_OBSERVATION)."""
     own = np.empty(len(mirror))

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from footfall.compiled import kernel
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def pursue(line, spacing, row, window, x, y, ahead, offset):  # type: ignore[no-untyped-def]
     """Where a walker at (x, y) is along a route, and where it aims.
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numba.extending import register_jitable
 
+from footfall.compiled import kernel
 from footfall.simulate.walker._elementwise import choose, clip
 from footfall.simulate.walker.state import (
     AMPLITUDE,
@@ -47,7 +47,7 @@ def draw(s, normal):  # type: ignore[no-untyped-def]
     goal[TOE_OUT_LEFT] = choose(left, goal[TOE_OUT_LEFT], mean[TOE_OUT_LEFT] + toe_out)
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def draw_all(state, rows, normal):  # type: ignore[no-untyped-def]
     """`draw` for the walkers `rows` (m,) from `normal` (m, 5)."""
     for i in range(len(rows)):
