@@ -43,6 +43,8 @@ def other(parameter):
         now = now[0]
     if isinstance(now, bool):
         return not now
+    if now == float("inf"):
+        return 1.0
     if isinstance(now, int | float):
         return now + 1 if parameter.type.endswith("whole number") else now * 0.999 or 1e-3
     return None
