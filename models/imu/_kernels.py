@@ -6,10 +6,11 @@ Each changes its samples in place, row by row: a recording needs no memory but i
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from footfall.compiled import kernel
 
 
-@njit(cache=True)
+@kernel()
 def add_linear(x, matrix, of):  # type: ignore[no-untyped-def]
     """x += matrix @ of, for each row."""
     for k in range(len(x)):
@@ -18,7 +19,7 @@ def add_linear(x, matrix, of):  # type: ignore[no-untyped-def]
             x[k, i] += matrix[i, 0] * a + matrix[i, 1] * b + matrix[i, 2] * c
 
 
-@njit(cache=True)
+@kernel()
 def add_quadratic(x, matrix, of):  # type: ignore[no-untyped-def]
     """x += matrix @ of^2, for each row."""
     for k in range(len(x)):
@@ -27,7 +28,7 @@ def add_quadratic(x, matrix, of):  # type: ignore[no-untyped-def]
             x[k, i] += matrix[i, 0] * a + matrix[i, 1] * b + matrix[i, 2] * c
 
 
-@njit(cache=True)
+@kernel()
 def add_cubic(x, largest, full_scale, of):  # type: ignore[no-untyped-def]
     """x += largest T3(of / full_scale), for each axis; beyond full scale as at it."""
     for k in range(len(x)):
@@ -36,7 +37,7 @@ def add_cubic(x, largest, full_scale, of):  # type: ignore[no-untyped-def]
             x[k, i] += largest[i] * (4.0 * (u * u * u) - 3.0 * u)
 
 
-@njit(cache=True)
+@kernel()
 def add_parabola(x, linear, quadratic, of):  # type: ignore[no-untyped-def]
     """x += linear of + quadratic of^2, for each row."""
     for k in range(len(x)):
@@ -44,7 +45,7 @@ def add_parabola(x, linear, quadratic, of):  # type: ignore[no-untyped-def]
             x[k, i] += linear[i] * of[k] + quadratic[i] * (of[k] * of[k])
 
 
-@njit(cache=True)
+@kernel()
 def add_noise(x, sigma, first, decay, drive, generator):  # type: ignore[no-untyped-def]
     """x += sigma b, with b+ = decay b + drive n on each axis, begun with b = first n.
 
@@ -61,7 +62,7 @@ def add_noise(x, sigma, first, decay, drive, generator):  # type: ignore[no-unty
             x[k, i] += sigma * b[i]
 
 
-@njit(cache=True)
+@kernel()
 def low_pass(x, b0, b1, b2, a1, a2):  # type: ignore[no-untyped-def]
     """Second-order section of gain 1 at rest, started settled on the first row (transposed form II)."""
     s, r = np.zeros(3), np.zeros(3)
@@ -76,7 +77,7 @@ def low_pass(x, b0, b1, b2, a1, a2):  # type: ignore[no-untyped-def]
             x[k, i] = y
 
 
-@njit(cache=True)
+@kernel()
 def add_lag(air, lag, decay, mean):  # type: ignore[no-untyped-def]
     """air += e, with e+ = decay e - mean (air+ - air), begun with e = lag."""
     before = air[0]
