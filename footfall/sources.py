@@ -24,7 +24,15 @@ STAGES = {
     "score": ("footfall.scenarios.judge.score",),
 }
 # What is imported and changes no number: messages, the format of files, what is only seen, and this file.
-NO_PART = frozenset({"footfall.errors", "footfall.tables", "footfall.models.appearance", "footfall.sources"})
+NO_PART = frozenset(
+    {
+        "footfall.errors",
+        "footfall.late",
+        "footfall.models.appearance",
+        "footfall.sources",
+        "footfall.tables",
+    }
+)
 
 _ROOT = Path(footfall.__file__).parent
 
@@ -86,6 +94,8 @@ def _imported(node: ast.AST) -> Iterator[str]:
                 yield inside
             elif node.module != "footfall":
                 yield node.module
+    elif isinstance(node, ast.Call) and ast.unparse(node.func) == "late":  # footfall.late
+        yield from (name.value for name in node.args if str(name.value).startswith("footfall."))  # type: ignore[attr-defined]
     else:
         for child in ast.iter_child_nodes(node):
             yield from _imported(child)

@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.validation import _gait_kinetics, _gait_rows, _gait_walks, gait_realism
 from benchmarks.validation._gait_distances import distance, distances
-from footfall.models.body import MOUNTS
+from footfall.models.mount import MOUNTS
 from tests.helpers.straight import recorded, walked
 
 

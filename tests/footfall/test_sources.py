@@ -40,6 +40,21 @@ def test_an_edit_of_what_does_not_walk_throws_no_walk_away():
     assert {f"footfall.simulate.walker.{part}" for part in WALKER} <= hashed
 
 
+@pytest.mark.parametrize(
+    ("stage", "kernels"),
+    [
+        ("walk", "simulate._truth_kernels"),
+        ("record", "simulate._budget_kernels"),
+        ("reckon", "pdr._kernels"),
+        ("reckon", "pdr._detection"),
+        ("track", "pdr.filter._kernels"),
+        ("track", "hdr._kernels"),
+    ],
+)
+def test_kernels_that_are_imported_late_are_hashed_too(stage, kernels):
+    assert f"footfall.{kernels}" in modules_of(*STAGES[stage])
+
+
 def test_navigation_does_not_depend_on_how_walks_are_made():
     for stage in ("reckon", "track"):
         assert not any(name.startswith("footfall.simulate") for name in modules_of(*STAGES[stage]))
@@ -51,11 +66,13 @@ def package(tmp_path, monkeypatch):
     """A package of its own in Footfall's place."""
     files = {
         "__init__": "",
-        "a": "import os\nfrom footfall import b\nfrom footfall.sub import name\nimport footfall.far.away\n",
+        "a": "import os\nfrom footfall import b\nfrom footfall.sub import name\nimport footfall.far.away\n"
+        "fast, _ = late('footfall.fast'), late('scipy')\n",
         "b": "def later():\n    from footfall.c import thing\n",
         "c": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from footfall import types_alone\n",
         "types_alone": "",
         "unused": "",
+        "fast": "",
         "sub/__init__": "from footfall.sub.inner import name\n",
         "sub/inner": "name = 1\n",
         "sub/other": "",
@@ -82,7 +99,8 @@ def forget() -> None:
 def test_imports_are_followed_to_the_end(package):
     """Late ones, those through a package's own file, and round in circles; types alone count for nothing."""
     assert modules_of("footfall.a") == (
-        "footfall.a", "footfall.b", "footfall.c", "footfall.far.away", "footfall.sub", "footfall.sub.inner",
+        "footfall.a", "footfall.b", "footfall.c", "footfall.far.away", "footfall.fast", "footfall.sub",
+        "footfall.sub.inner",
     )  # fmt: skip
 
 
@@ -93,7 +111,7 @@ def test_the_digest_is_of_the_content_of_those_files_alone(package):
     forget()
     assert stage_digest("walk") == before
     kept = shutil.copytree(package, package.parent / "kept")
-    for name in ("a", "b", "c", "sub/__init__", "sub/inner", "far/away"):
+    for name in ("a", "b", "c", "sub/__init__", "sub/inner", "far/away", "fast"):
         file = package / f"{name}.py"
         file.write_text((kept / f"{name}.py").read_text() + "x = 2\n")
         forget()

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from benchmarks.validation._gait_walks import Case, Motion, samples, walk_straight
-from footfall.models.body import MOUNTS
+from footfall.models.mount import MOUNTS
 from footfall.recording import Recording
 
 

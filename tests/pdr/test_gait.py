@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
-from footfall.models.body import MOUNTS
+from footfall.models.mount import MOUNTS
 from footfall.pdr.gait.statistics import bands, foot_figures, longest_still, quietest, rectified, stance_yaw
 from footfall.pdr.gait.strides import (
     CROSSING_PHASE,

@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
-from benchmarks.validation._real import find, rigid_rmse
+from benchmarks.validation._real import find
 from footfall.formats import read
 from footfall.hdr.methods import METHODS, Reckoning, tracks
+from footfall.hdr.tracks import pdr_track
 from footfall.pdr.reckoning import PdrParams, dead_reckon
 from footfall.pdr.rest import still_time
+from footfall.scenarios.judge.reference import score_footprints
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +81,7 @@ def test_gdin_footprints_are_met(real, name):
 
     walked = np.hypot(*np.diff(prints[:, 1:], axis=0).T).sum()
     assert found.distance.sum() == pytest.approx(walked, rel=0.02)  # the paper: 1-2 % of the distance
-    assert rigid_rmse(found.position[:, :2], prints[:, 1:]) < 0.8
+    assert score_footprints(pdr_track(found), prints).footprint_rmse_m < 0.8
 
 
 def test_every_method_runs_on_a_real_recording(real):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from footfall.errors import InputError
-from footfall.models.body import MOUNTS
+from footfall.models.mount import MOUNTS
 from footfall.models.policy import stock_policy
 from footfall.models.subject import SUBJECTS
 from footfall.simulate import cache
