@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -118,12 +117,13 @@ def _first_moved(values: np.ndarray, edges: np.ndarray, limit: float) -> int | N
     Where a block's mean leaves that of the first by more than `limit`, noise may be the cause: the scatter of
     the samples before it, which rest, says by how much.
     """
-    blocks = [values[start:stop].mean(axis=0) for start, stop in pairwise(edges)]
-    if not blocks:
+    if len(edges) < 2:
         return None
-    for place in np.flatnonzero(np.linalg.norm(np.array(blocks) - blocks[0], axis=1) > limit):
-        before, count = values[edges[0] : edges[place]], edges[place + 1] - edges[place]
-        error = _noise(before) * math.sqrt(1 / count + 1 / len(before))
+    counts = np.diff(edges)
+    blocks = np.add.reduceat(values[: edges[-1]], edges[:-1], axis=0) / counts[:, None]
+    for place in np.flatnonzero(np.linalg.norm(blocks - blocks[0], axis=1) > limit):
+        before = values[edges[0] : edges[place]]
+        error = _noise(before) * math.sqrt(1 / counts[place] + 1 / len(before))
         if np.linalg.norm(blocks[place] - before.mean(axis=0)) > REST_NOISE * error:
             return int(place)
     return None

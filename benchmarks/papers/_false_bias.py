@@ -19,15 +19,8 @@ from footfall.conventions import heading_of
 from footfall.hdr.methods import Reckoning
 from footfall.pdr.filter import _kernels as kernels
 from footfall.pdr.filter._plain import PlainFilter, cross
-from footfall.pdr.filter.ins import (
-    ATTITUDE,
-    GYRO_BIAS,
-    VELOCITY,
-    ZERO_VELOCITY,
-    Alignment,
-    FilterSettings,
-    InertialFilter,
-)
+from footfall.pdr.filter.ins import ZERO_VELOCITY, Alignment, FilterSettings, InertialFilter
+from footfall.pdr.filter.layout import ATTITUDE, GYRO_BIAS, STATE, VELOCITY
 from footfall.pdr.filter.run import align, run_filter, updates
 from footfall.pdr.strapdown import integrate
 from footfall.runs import runs
@@ -153,9 +146,9 @@ def drive(
             # The stride's direction, as far as the filter's heading is off.
             turned = motion.direction[k] + now.heading - motion.heading[k]
             say = _back(turned, velocity[k])
-            x[4:7] -= say
+            x[STATE["velocity"]] -= say
             kernels.rest(x, p, gyro, accel, variance, 0.0, settings.velocity_turns)
-            x[4:7] += say
+            x[STATE["velocity"]] += say
     return math.degrees(_vertical(now.quaternion) @ (now.gyro_bias - found.rest.gyro_bias))
 
 

@@ -1,9 +1,7 @@
-"""Compiled error-state filter. The face that explains and checks is ins.py, the numpy twin _plain_ins.py.
+"""Compiled error-state filter. The face that explains and checks is ins.py, the numpy twin _plain.py.
 
-Layout of the state x (25,): quaternion 0:4, velocity 4:7, position 7:10, accelerometer bias 10:13, gyro bias
-13:16, g-sensitivity 16:25 (row by row). Layout of the error dx (n,), delta = truth - estimate: position 0:3,
-velocity 3:6, attitude 6:9 (navigation frame), accelerometer bias 9:12, gyro bias 12:15, and for n = 24
-g-sensitivity 15:24.
+State x and error dx are laid out in layout.py; the names below are where each part of them begins. A filter
+without g-sensitivity has an error that ends before it.
 
 The transition is I but for nine rows, so that F P F' costs nine rows and then nine columns of a 9 x 9 block,
 not two products of matrices.
@@ -18,6 +16,12 @@ import numpy as np
 from footfall.compiled import kernel
 from footfall.conventions import GRAVITY
 from footfall.pdr._kernels import exponential, multiply
+from footfall.pdr.filter.layout import ERROR, HEADING, STATE, Measurement
+
+# Of the error: position, velocity, attitude, accelerometer bias, gyro bias, g-sensitivity (row by row).
+_P, _V, _A, _B, _W, _G = (part.start for part in ERROR.values())
+# Of the state: quaternion, and the others in its order.
+_XQ, _XV, _XP, _XB, _XW, _XG = (part.start for part in STATE.values())
 
 
 @kernel(nogil=True)
@@ -38,23 +42,23 @@ def _advance_rows(a, c, f, s, dt):  # type: ignore[no-untyped-def]
     c : attitude row by row, times dt; f : force in the navigation frame times dt; s : force in the body.
     """
     n = a.shape[1]
-    wide = a.shape[0] > 15
+    wide = a.shape[0] > _G
     for k in range(n):
         for i in range(3):
-            a[i, k] += dt * a[3 + i, k]
-        px, py, pz = a[6, k], a[7, k], a[8, k]
-        bx, by, bz = a[9, k], a[10, k], a[11, k]
-        a[3, k] -= f[1] * pz - f[2] * py + c[0] * bx + c[1] * by + c[2] * bz
-        a[4, k] -= f[2] * px - f[0] * pz + c[3] * bx + c[4] * by + c[5] * bz
-        a[5, k] -= f[0] * py - f[1] * px + c[6] * bx + c[7] * by + c[8] * bz
-        wx, wy, wz = a[12, k], a[13, k], a[14, k]
+            a[_P + i, k] += dt * a[_V + i, k]
+        px, py, pz = a[_A, k], a[_A + 1, k], a[_A + 2, k]
+        bx, by, bz = a[_B, k], a[_B + 1, k], a[_B + 2, k]
+        a[_V, k] -= f[1] * pz - f[2] * py + c[0] * bx + c[1] * by + c[2] * bz
+        a[_V + 1, k] -= f[2] * px - f[0] * pz + c[3] * bx + c[4] * by + c[5] * bz
+        a[_V + 2, k] -= f[0] * py - f[1] * px + c[6] * bx + c[7] * by + c[8] * bz
+        wx, wy, wz = a[_W, k], a[_W + 1, k], a[_W + 2, k]
         if wide:
-            wx += s[0] * a[15, k] + s[1] * a[16, k] + s[2] * a[17, k]
-            wy += s[0] * a[18, k] + s[1] * a[19, k] + s[2] * a[20, k]
-            wz += s[0] * a[21, k] + s[1] * a[22, k] + s[2] * a[23, k]
-        a[6, k] -= c[0] * wx + c[1] * wy + c[2] * wz
-        a[7, k] -= c[3] * wx + c[4] * wy + c[5] * wz
-        a[8, k] -= c[6] * wx + c[7] * wy + c[8] * wz
+            wx += s[0] * a[_G, k] + s[1] * a[_G + 1, k] + s[2] * a[_G + 2, k]
+            wy += s[0] * a[_G + 3, k] + s[1] * a[_G + 4, k] + s[2] * a[_G + 5, k]
+            wz += s[0] * a[_G + 6, k] + s[1] * a[_G + 7, k] + s[2] * a[_G + 8, k]
+        a[_A, k] -= c[0] * wx + c[1] * wy + c[2] * wz
+        a[_A + 1, k] -= c[3] * wx + c[4] * wy + c[5] * wz
+        a[_A + 2, k] -= c[6] * wx + c[7] * wy + c[8] * wz
 
 
 @kernel(nogil=True)
@@ -62,25 +66,25 @@ def _advance_covariance(p, c, f, s, dt):  # type: ignore[no-untyped-def]
     """p <- F p F' (Deng Eq. 12)."""
     _advance_rows(p, c, f, s, dt)
     n = p.shape[0]
-    wide = n > 15
-    # Columns from 9 on are not changed by F', and rows from 9 on are those columns once more.
-    for i in range(9):
+    wide = n > _G
+    # Columns from the biases on are not changed by F', and rows from there on are those columns once more.
+    for i in range(_B):
         for k in range(3):
-            p[i, k] += dt * p[i, 3 + k]
-        px, py, pz = p[i, 6], p[i, 7], p[i, 8]
-        bx, by, bz = p[i, 9], p[i, 10], p[i, 11]
-        p[i, 3] -= f[1] * pz - f[2] * py + c[0] * bx + c[1] * by + c[2] * bz
-        p[i, 4] -= f[2] * px - f[0] * pz + c[3] * bx + c[4] * by + c[5] * bz
-        p[i, 5] -= f[0] * py - f[1] * px + c[6] * bx + c[7] * by + c[8] * bz
-        wx, wy, wz = p[i, 12], p[i, 13], p[i, 14]
+            p[i, _P + k] += dt * p[i, _V + k]
+        px, py, pz = p[i, _A], p[i, _A + 1], p[i, _A + 2]
+        bx, by, bz = p[i, _B], p[i, _B + 1], p[i, _B + 2]
+        p[i, _V] -= f[1] * pz - f[2] * py + c[0] * bx + c[1] * by + c[2] * bz
+        p[i, _V + 1] -= f[2] * px - f[0] * pz + c[3] * bx + c[4] * by + c[5] * bz
+        p[i, _V + 2] -= f[0] * py - f[1] * px + c[6] * bx + c[7] * by + c[8] * bz
+        wx, wy, wz = p[i, _W], p[i, _W + 1], p[i, _W + 2]
         if wide:
-            wx += s[0] * p[i, 15] + s[1] * p[i, 16] + s[2] * p[i, 17]
-            wy += s[0] * p[i, 18] + s[1] * p[i, 19] + s[2] * p[i, 20]
-            wz += s[0] * p[i, 21] + s[1] * p[i, 22] + s[2] * p[i, 23]
-        p[i, 6] -= c[0] * wx + c[1] * wy + c[2] * wz
-        p[i, 7] -= c[3] * wx + c[4] * wy + c[5] * wz
-        p[i, 8] -= c[6] * wx + c[7] * wy + c[8] * wz
-    for i in range(9):
+            wx += s[0] * p[i, _G] + s[1] * p[i, _G + 1] + s[2] * p[i, _G + 2]
+            wy += s[0] * p[i, _G + 3] + s[1] * p[i, _G + 4] + s[2] * p[i, _G + 5]
+            wz += s[0] * p[i, _G + 6] + s[1] * p[i, _G + 7] + s[2] * p[i, _G + 8]
+        p[i, _A] -= c[0] * wx + c[1] * wy + c[2] * wz
+        p[i, _A + 1] -= c[3] * wx + c[4] * wy + c[5] * wz
+        p[i, _A + 2] -= c[6] * wx + c[7] * wy + c[8] * wz
+    for i in range(_B):
         for k in range(i + 1, n):
             p[k, i] = p[i, k]
 
@@ -88,11 +92,11 @@ def _advance_covariance(p, c, f, s, dt):  # type: ignore[no-untyped-def]
 @kernel(nogil=True)
 def corrected(x, gyro, accel):  # type: ignore[no-untyped-def]
     """Force and rate that the state makes of a sample: without biases and g-sensitivity."""
-    f = (accel[0] - x[10], accel[1] - x[11], accel[2] - x[12])
+    f = (accel[0] - x[_XB], accel[1] - x[_XB + 1], accel[2] - x[_XB + 2])
     return f, (
-        gyro[0] - x[13] - (x[16] * f[0] + x[17] * f[1] + x[18] * f[2]),
-        gyro[1] - x[14] - (x[19] * f[0] + x[20] * f[1] + x[21] * f[2]),
-        gyro[2] - x[15] - (x[22] * f[0] + x[23] * f[1] + x[24] * f[2]),
+        gyro[0] - x[_XW] - (x[_XG] * f[0] + x[_XG + 1] * f[1] + x[_XG + 2] * f[2]),
+        gyro[1] - x[_XW + 1] - (x[_XG + 3] * f[0] + x[_XG + 4] * f[1] + x[_XG + 5] * f[2]),
+        gyro[2] - x[_XW + 2] - (x[_XG + 6] * f[0] + x[_XG + 7] * f[1] + x[_XG + 8] * f[2]),
     )
 
 
@@ -104,7 +108,7 @@ def propagate(x, p, phi, gyro, accel, dt, noise, gap):  # type: ignore[no-untype
     gap : (3,) longest interval that is no gap, and the deviations of force and rate in a gap
     """
     s, w = corrected(x, gyro, accel)
-    q = (x[0], x[1], x[2], x[3])
+    q = (x[_XQ], x[_XQ + 1], x[_XQ + 2], x[_XQ + 3])
     half = exponential(0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2])
     middle = multiply(q, half)
     m = matrix(middle)
@@ -114,14 +118,14 @@ def propagate(x, p, phi, gyro, accel, dt, noise, gap):  # type: ignore[no-untype
         c[3] * s[0] + c[4] * s[1] + c[5] * s[2],
         c[6] * s[0] + c[7] * s[1] + c[8] * s[2],
     )
-    vx, vy, vz = x[4] + f[0], x[5] + f[1], x[6] + f[2] - GRAVITY * dt
-    x[7] += 0.5 * dt * (x[4] + vx)
-    x[8] += 0.5 * dt * (x[5] + vy)
-    x[9] += 0.5 * dt * (x[6] + vz)
-    x[4], x[5], x[6] = vx, vy, vz
+    vx, vy, vz = x[_XV] + f[0], x[_XV + 1] + f[1], x[_XV + 2] + f[2] - GRAVITY * dt
+    x[_XP] += 0.5 * dt * (x[_XV] + vx)
+    x[_XP + 1] += 0.5 * dt * (x[_XV + 1] + vy)
+    x[_XP + 2] += 0.5 * dt * (x[_XV + 2] + vz)
+    x[_XV], x[_XV + 1], x[_XV + 2] = vx, vy, vz
     q = multiply(middle, half)
     mend = 1.5 - 0.5 * (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-    x[0], x[1], x[2], x[3] = mend * q[0], mend * q[1], mend * q[2], mend * q[3]
+    x[_XQ], x[_XQ + 1], x[_XQ + 2], x[_XQ + 3] = mend * q[0], mend * q[1], mend * q[2], mend * q[3]
 
     _advance_covariance(p, c, f, s, dt)
     if phi.shape[0] > 0:
@@ -132,10 +136,10 @@ def propagate(x, p, phi, gyro, accel, dt, noise, gap):  # type: ignore[no-untype
         force += (gap[1] * dt) ** 2
         rate += (gap[2] * dt) ** 2
     for i in range(3):
-        p[3 + i, 3 + i] += force
-        p[6 + i, 6 + i] += rate
-        p[9 + i, 9 + i] += noise[2] * dt
-        p[12 + i, 12 + i] += noise[3] * dt
+        p[_V + i, _V + i] += force
+        p[_A + i, _A + i] += rate
+        p[_B + i, _B + i] += noise[2] * dt
+        p[_W + i, _W + i] += noise[3] * dt
 
 
 @kernel(nogil=True)
@@ -179,12 +183,34 @@ def _symmetrise(p):  # type: ignore[no-untyped-def]
 
 
 @kernel(nogil=True)
-def _take_in(dx, h, first, last, z, gain):  # type: ignore[no-untyped-def]
-    """Add to dx what the measurement z = h dx says."""
-    for k in range(first, last):
-        z -= h[k] * dx[k]
-    for i in range(dx.shape[0]):
-        dx[i] += gain[i] * z
+def _span(h):  # type: ignore[no-untyped-def]
+    """First and one past the last of a row that is not zero."""
+    first, last = 0, h.shape[0]
+    while first < last and h[first] == 0.0:
+        first += 1
+    while last > first and h[last - 1] == 0.0:
+        last -= 1
+    return first, last
+
+
+@kernel(nogil=True)
+def _take_in(p, known, dx, measurement, apart):  # type: ignore[no-untyped-def]
+    """Take a measurement in, row by row: what it says into dx, what it leaves uncertain into p.
+
+    known : the covariance that the gain goes by: p itself, or (`apart`) another, which follows
+    """
+    gain = np.empty(p.shape[0])
+    for m in range(measurement.z.shape[0]):
+        h, z, variance = measurement.h[m], measurement.z[m], measurement.r[m]
+        first, last = _span(h)
+        _gain(known, h, first, last, variance, gain)
+        for k in range(first, last):
+            z -= h[k] * dx[k]
+        for i in range(dx.shape[0]):
+            dx[i] += gain[i] * z
+        _joseph(p, h, first, last, variance, gain)
+        if apart:
+            _joseph(known, h, first, last, variance, gain)
 
 
 @kernel(nogil=True)
@@ -210,17 +236,17 @@ def _with_known(p, row):  # type: ignore[no-untyped-def]
 def _with_known_turn(x, p):  # type: ignore[no-untyped-def]
     """p if the heading was known, and whatever the gyro's errors turn about the vertical."""
     n = p.shape[0]
-    m = matrix((x[0], x[1], x[2], x[3]))
+    m = matrix((x[_XQ], x[_XQ + 1], x[_XQ + 2], x[_XQ + 3]))
     known, row = p.copy(), np.zeros(n)
-    row[8] = 1.0
+    row[HEADING] = 1.0
     _with_known(known, row)
-    row[8] = 0.0
-    row[12], row[13], row[14] = m[6], m[7], m[8]
+    row[HEADING] = 0.0
+    row[_W], row[_W + 1], row[_W + 2] = m[6], m[7], m[8]
     _with_known(known, row)
-    if n > 15:
+    if n > _G:
         for k in range(3):
             row[:] = 0.0
-            row[15 + k], row[18 + k], row[21 + k] = m[6], m[7], m[8]
+            row[_G + k], row[_G + 3 + k], row[_G + 6 + k] = m[6], m[7], m[8]
             _with_known(known, row)
     return known
 
@@ -229,48 +255,72 @@ def _with_known_turn(x, p):  # type: ignore[no-untyped-def]
 def inject(x, dx):  # type: ignore[no-untyped-def]
     """Add the error to the state; the attitude by C <- exp[dphi x] C (delta = truth - estimate)."""
     for i in range(3):
-        x[7 + i] += dx[i]
-        x[4 + i] += dx[3 + i]
-        x[10 + i] += dx[9 + i]
-        x[13 + i] += dx[12 + i]
-    q = multiply(exponential(dx[6], dx[7], dx[8]), (x[0], x[1], x[2], x[3]))
+        x[_XP + i] += dx[_P + i]
+        x[_XV + i] += dx[_V + i]
+        x[_XB + i] += dx[_B + i]
+        x[_XW + i] += dx[_W + i]
+    q = multiply(exponential(dx[_A], dx[_A + 1], dx[_A + 2]), (x[_XQ], x[_XQ + 1], x[_XQ + 2], x[_XQ + 3]))
     length = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-    x[0], x[1], x[2], x[3] = q[0] / length, q[1] / length, q[2] / length, q[3] / length
-    for i in range(15, dx.shape[0]):
-        x[1 + i] += dx[i]
+    for i in range(4):
+        x[_XQ + i] = q[i] / length
+    for i in range(dx.shape[0] - _G):
+        x[_XG + i] += dx[_G + i]
+
+
+@kernel(nogil=True)
+def update(x, p, measurement):  # type: ignore[no-untyped-def]
+    """Take a measurement in and put right what it says; returns the error injected."""
+    dx = np.zeros(p.shape[0])
+    _take_in(p, p, dx, measurement, False)
+    _symmetrise(p)
+    inject(x, dx)
+    return dx
+
+
+@kernel(nogil=True)
+def zero_velocity(x, n, variance):  # type: ignore[no-untyped-def]
+    """The foot stands (Eq. 6, 11)."""
+    z, h, r = np.empty(3), np.zeros((3, n)), np.empty(3)
+    for i in range(3):
+        z[i], h[i, _V + i], r[i] = -x[_XV + i], 1.0, variance
+    return Measurement(z, h, r)
+
+
+@kernel(nogil=True)
+def zero_rate(x, n, gyro, accel, variance):  # type: ignore[no-untyped-def]
+    """The foot does not turn: what the gyros say is their bias and their g-sensitivity."""
+    z, h, r = np.empty(3), np.zeros((3, n)), np.empty(3)
+    force, rate = corrected(x, gyro, accel)
+    for i in range(3):
+        z[i], h[i, _W + i], r[i] = rate[i], 1.0, variance
+        if n > _G:
+            for k in range(3):
+                h[i, _G + 3 * i + k] = force[k]
+    return Measurement(z, h, r)
+
+
+@kernel(nogil=True)
+def heading_off(x, n, innovation, variance):  # type: ignore[no-untyped-def]
+    """The heading is off by `innovation`, truth - estimate (Eq. 27, 28)."""
+    z, h, r = np.empty(1), np.zeros((1, n)), np.empty(1)
+    z[0], r[0] = innovation, variance
+    h[0, _A], h[0, _A + 1], h[0, _A + 2] = heading_row(x)
+    return Measurement(z, h, r)
 
 
 @kernel(nogil=True)
 def rest(x, p, gyro, accel, velocity_variance, rate_variance, turns):  # type: ignore[no-untyped-def]
-    """Zero velocity (Eq. 6, 11), and zero rate where `rate_variance` > 0; returns the error injected.
+    """Zero velocity, and zero rate where `rate_variance` > 0; returns the error injected.
 
     turns : whether the velocity may correct the heading and the gyro's errors about the vertical. If not, the
     gain is that of a filter which knows them, so that they neither change nor let anything else change
     """
     n = p.shape[0]
-    dx, h, gain = np.zeros(n), np.zeros(n), np.empty(n)
+    dx = np.zeros(n)
     known = p if turns else _with_known_turn(x, p)
-    for i in range(3):
-        h[3 + i] = 1.0
-        _gain(known, h, 3 + i, 4 + i, velocity_variance, gain)
-        _take_in(dx, h, 3 + i, 4 + i, -x[4 + i], gain)
-        _joseph(p, h, 3 + i, 4 + i, velocity_variance, gain)
-        if not turns:
-            _joseph(known, h, 3 + i, 4 + i, velocity_variance, gain)
-        h[3 + i] = 0.0
+    _take_in(p, known, dx, zero_velocity(x, n, velocity_variance), not turns)
     if rate_variance > 0.0:
-        f, w = corrected(x, gyro, accel)
-        for i in range(3):
-            h[12 + i] = 1.0
-            last = 13 + i
-            if n > 15:
-                for k in range(3):
-                    h[15 + 3 * i + k] = f[k]
-                last = 18 + 3 * i
-            _gain(p, h, 12 + i, last, rate_variance, gain)
-            _take_in(dx, h, 12 + i, last, w[i], gain)
-            _joseph(p, h, 12 + i, last, rate_variance, gain)
-            h[:] = 0.0
+        _take_in(p, p, dx, zero_rate(x, n, gyro, accel, rate_variance), False)
     _symmetrise(p)
     inject(x, dx)
     return dx
@@ -279,33 +329,40 @@ def rest(x, p, gyro, accel, velocity_variance, rate_variance, turns):  # type: i
 @kernel(nogil=True)
 def heading_row(x):  # type: ignore[no-untyped-def]
     """d heading / d attitude error: the body's x axis e turns by phi x e, so [-ez ex, -ez ey, h^2] / h^2."""
-    m = matrix((x[0], x[1], x[2], x[3]))
+    m = matrix((x[_XQ], x[_XQ + 1], x[_XQ + 2], x[_XQ + 3]))
     level = m[0] * m[0] + m[3] * m[3]
     return -m[6] * m[0] / level, -m[6] * m[3] / level, 1.0
 
 
 @kernel(nogil=True)
-def heading(x, p, innovation, variance):  # type: ignore[no-untyped-def]
-    """The heading is off by `innovation`, truth - estimate (Eq. 27, 28); returns the error injected."""
-    n = p.shape[0]
-    dx, h, gain = np.zeros(n), np.zeros(n), np.empty(n)
-    h[6], h[7], h[8] = heading_row(x)
-    _gain(p, h, 6, 9, variance, gain)
-    _take_in(dx, h, 6, 9, innovation, gain)
-    _joseph(p, h, 6, 9, variance, gain)
-    _symmetrise(p)
-    inject(x, dx)
-    return dx
+def heading_variance(x, p):  # type: ignore[no-untyped-def]
+    """Variance of the heading (rad^2)."""
+    row = heading_row(x)
+    total = 0.0
+    for i in range(3):
+        for k in range(3):
+            total += row[i] * p[_A + i, _A + k] * row[k]
+    return total
 
 
 @kernel(nogil=True)
-def run(x, p, phi, before, t, gyro, accel, still, noise, gap, velocity_variance, rate_variance, turns):  # type: ignore[no-untyped-def]
+def run(x, p, phi, before, t, gyro, accel, still, noise, gap, variances, turns, stops, states, covariances):  # type: ignore[no-untyped-def]
     """All samples in order, each over the interval since the one before; `before` is the state's stamp.
 
     still : (n,) 1 for zero velocity, 2 for zero rate too
+    variances : of zero velocity and of zero rate
+    stops : (k,) increasing, samples after which x and p are written into `states` and `covariances` (k, ...);
+    -1 is before the first
     """
-    for k in range(len(t)):
-        propagate(x, p, phi, gyro[k], accel[k], t[k] - before, noise, gap)
-        before = t[k]
-        if still[k] > 0:
-            rest(x, p, gyro[k], accel[k], velocity_variance, rate_variance if still[k] > 1 else 0.0, turns)
+    stop = 0
+    for k in range(-1, len(t)):
+        if k >= 0:
+            propagate(x, p, phi, gyro[k], accel[k], t[k] - before, noise, gap)
+            before = t[k]
+            if still[k] > 0:
+                rate = variances[1] if still[k] > 1 else 0.0
+                rest(x, p, gyro[k], accel[k], variances[0], rate, turns)
+        if stop < len(stops) and stops[stop] == k:
+            states[stop] = x
+            covariances[stop] = p
+            stop += 1

@@ -6,7 +6,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
-from footfall.pdr.filter.ins import (
+from footfall.pdr.filter.ins import ZERO_RATE, Alignment, FilterSettings, initial_covariance
+from footfall.pdr.filter.layout import (
     ACCEL_BIAS,
     ATTITUDE,
     G_SENSITIVITY,
@@ -14,10 +15,6 @@ from footfall.pdr.filter.ins import (
     HEADING,
     POSITION,
     VELOCITY,
-    ZERO_RATE,
-    Alignment,
-    FilterSettings,
-    initial_covariance,
 )
 
 

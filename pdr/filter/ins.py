@@ -7,22 +7,31 @@ the errors of the strapdown, delta = truth - estimate, and puts them right at on
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
-from footfall.conventions import GRAVITY, heading_of
+from footfall.conventions import GRAVITY
 from footfall.errors import InputError
 from footfall.late import late
+from footfall.pdr.filter.layout import (
+    ACCEL_BIAS,
+    ATTITUDE,
+    G_SENSITIVITY,
+    GYRO_BIAS,
+    STATE,
+    STATES,
+    Measurement,
+    error_slices,
+)
+from footfall.pdr.filter.states import States, heading
+from footfall.pdr.stance import compact
 from footfall.pdr.strapdown import ORIGIN
 from footfall.settings import require, setting
 
 kernels = late("footfall.pdr.filter._kernels")
-
-POSITION, VELOCITY, ATTITUDE = slice(0, 3), slice(3, 6), slice(6, 9)
-ACCEL_BIAS, GYRO_BIAS, G_SENSITIVITY = slice(9, 12), slice(12, 15), slice(15, 24)
-HEADING = 8  # the attitude error about the vertical
 
 MOVING, ZERO_VELOCITY, ZERO_RATE = 0, 1, 2
 
@@ -106,9 +115,14 @@ class FilterSettings:
         )
 
     @property
+    def layout(self) -> Mapping[str, slice]:
+        """Where each estimated error stands in the error state and its covariance."""
+        return error_slices(self.g_sensitivity)
+
+    @property
     def states(self) -> int:
         """Length of the error state."""
-        return 24 if self.g_sensitivity else 15
+        return max(part.stop for part in self.layout.values())
 
 
 @dataclass(frozen=True)
@@ -145,9 +159,9 @@ class InertialFilter:
     def __init__(self, settings: FilterSettings, start: Alignment) -> None:
         self.settings = settings
         self.t = float(start.t)
-        self._x = np.concatenate(
-            [start.quaternion, ORIGIN, start.position, ORIGIN, start.gyro_bias, np.zeros(9)]
-        )
+        self._x = np.zeros(STATES)
+        for name in ("quaternion", "position", "gyro_bias"):
+            self._x[STATE[name]] = getattr(start, name)
         self._p = initial_covariance(settings, start)
         self._noise = np.square(
             [
@@ -168,7 +182,8 @@ class InertialFilter:
         accel: np.ndarray,
         update: np.ndarray,
         transition: np.ndarray | None = None,
-    ) -> None:
+        stops: Sequence[int] | np.ndarray = (),
+    ) -> States:
         """Take the samples that follow.
 
         Parameters
@@ -178,25 +193,34 @@ class InertialFilter:
         update : (n,) int, what is known at the end of each sample: `MOVING` nothing, `ZERO_VELOCITY`,
             `ZERO_RATE` both (with `settings.zaru`; else the velocity alone)
         transition : (states, states) is multiplied from the left by the samples' transition; for smoothers
+        stops : increasing places in t; -1 is before the first of them
+
+        Returns
+        -------
+        What is known at each of `stops`, after its update.
         """
-        if len(t) == 0:
-            return
+        k, before = len(stops), self.t
+        states = np.empty((k, STATES)), np.empty((k, *self._p.shape))
         kernels.run(
             self._x,
             self._p,
             np.empty((0, 0)) if transition is None else transition,
-            self.t,
-            np.ascontiguousarray(t, dtype=float),
-            np.ascontiguousarray(gyro, dtype=float),
-            np.ascontiguousarray(accel, dtype=float),
+            before,
+            compact(t),
+            compact(gyro),
+            compact(accel),
             np.ascontiguousarray(update, dtype=np.int64),
             self._noise,
             self._gap,
-            *self._variances,
+            self._variances,
             self.settings.velocity_turns,
+            np.array(stops, dtype=np.int64),
+            *states,
         )
-        self.t = float(t[-1])
-        self._sample = np.array(gyro[-1], dtype=float), np.array(accel[-1], dtype=float)
+        if len(t):
+            self.t = float(t[-1])
+            self._sample = np.array(gyro[-1], dtype=float), np.array(accel[-1], dtype=float)
+        return States(np.append(t, before)[np.array(stops, dtype=np.int64)], *states)
 
     def rest(self, update: int = ZERO_VELOCITY) -> np.ndarray:
         """Take in that the foot is at rest now, at the last sample; as `advance` does for its `update`.
@@ -210,6 +234,15 @@ class InertialFilter:
         return np.asarray(
             kernels.rest(self._x, self._p, *self._sample, velocity, rate, self.settings.velocity_turns)
         )
+
+    def update(self, measurement: Measurement) -> np.ndarray:
+        """Take in any measurement of the error state.
+
+        Returns
+        -------
+        (states,) the error that was put right.
+        """
+        return np.asarray(kernels.update(self._x, self._p, measurement))
 
     def correct_heading(self, innovation: float, sd: float) -> np.ndarray:
         """Take in that the heading is wrong by `innovation` (rad, truth - estimate), known to `sd` (rad).
@@ -227,7 +260,12 @@ class InertialFilter:
             raise InputError(
                 f"filter: heading innovation {innovation} rad, SD {sd} rad; expected finite numbers, SD > 0"
             )
-        return np.asarray(kernels.heading(self._x, self._p, float(innovation), float(sd) ** 2))
+        n = self.settings.states
+        return self.update(kernels.heading_off(self._x, n, float(innovation), float(sd) ** 2))
+
+    def state(self) -> States:
+        """What is known now."""
+        return States(np.array([self.t]), self._x[None].copy(), self._p[None].copy())
 
     def snapshot(self) -> InertialFilter:
         """A copy that goes its own way."""
@@ -245,47 +283,46 @@ class InertialFilter:
     @property
     def quaternion(self) -> np.ndarray:
         """(4,) body to world, scalar first."""
-        return self._x[0:4].copy()
+        return self._x[STATE["quaternion"]].copy()
 
     @property
     def velocity(self) -> np.ndarray:
         """(3,) m/s, world."""
-        return self._x[4:7].copy()
+        return self._x[STATE["velocity"]].copy()
 
     @property
     def position(self) -> np.ndarray:
         """(3,) m, world."""
-        return self._x[7:10].copy()
+        return self._x[STATE["position"]].copy()
 
     @property
     def heading(self) -> float:
         """Of the IMU's x axis, rad from -pi to pi; means something at rest only."""
-        return float(heading_of(self._x[0:4]))
+        return float(heading(*self._x[STATE["quaternion"]].tolist()))
 
     @property
     def heading_sd(self) -> float:
         """Standard deviation of the heading (rad)."""
-        row = np.array(kernels.heading_row(self._x))
-        return float(np.sqrt(row @ self._p[ATTITUDE, ATTITUDE] @ row))
+        return math.sqrt(kernels.heading_variance(self._x, self._p))
 
     @property
     def accel_bias(self) -> np.ndarray:
         """(3,) m/s2, body."""
-        return self._x[10:13].copy()
+        return self._x[STATE["accel_bias"]].copy()
 
     @property
     def gyro_bias(self) -> np.ndarray:
         """(3,) rad/s, body."""
-        return self._x[13:16].copy()
+        return self._x[STATE["gyro_bias"]].copy()
 
     @property
     def g_sensitivity(self) -> np.ndarray:
         """(3, 3) rad/s per m/s2; rows gyro, columns force."""
-        return self._x[16:25].reshape(3, 3).copy()
+        return self._x[STATE["g_sensitivity"]].reshape(3, 3).copy()
 
     @property
     def covariance(self) -> np.ndarray:
-        """(states, states) of delta = truth - estimate, in the order of this module's slices."""
+        """(states, states) of delta = truth - estimate, in the order of `FilterSettings.layout`."""
         return self._p.copy()
 
 
@@ -297,8 +334,7 @@ def initial_covariance(settings: FilterSettings, start: Alignment) -> np.ndarray
     both pairs start correlated, or the first strides would be spent on finding out.
     """
     p = np.zeros((settings.states, settings.states))
-    p[6, 6] = p[7, 7] = settings.tilt_sd**2
-    p[HEADING, HEADING] = settings.heading_sd**2
+    p[ATTITUDE, ATTITUDE] = np.diag([settings.tilt_sd**2, settings.tilt_sd**2, settings.heading_sd**2])
     if settings.estimate_accel_bias:
         attitude = np.array(kernels.matrix(tuple(start.quaternion))).reshape(3, 3)
         tilt = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]) @ attitude / GRAVITY
@@ -315,7 +351,7 @@ def initial_covariance(settings: FilterSettings, start: Alignment) -> np.ndarray
         p[GYRO_BIAS, GYRO_BIAS] += variance * share @ share.T
         p[GYRO_BIAS, G_SENSITIVITY] = -variance * share
         p[G_SENSITIVITY, GYRO_BIAS] = -variance * share.T
-        p[G_SENSITIVITY, G_SENSITIVITY] = variance * np.eye(9)
+        p[G_SENSITIVITY, G_SENSITIVITY] = variance * np.eye(share.shape[1])
     return p
 
 

@@ -21,6 +21,7 @@ from footfall.pdr.filter.ins import (
     about_vertical,
 )
 from footfall.pdr.filter.smooth import Node, smoothed
+from footfall.pdr.filter.states import States
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.reckoning import Detected, PdrParams, StartPose, detect, level_attitude
 from footfall.pdr.rest import Rest
@@ -41,6 +42,9 @@ class Step:
     still_time : s that the foot is at rest around this footfall
     position : (3,) m
     stride : (3,) m, displacement from the footfall before, as that was after its correction
+    heading_sd : rad, the filter's standard deviation of `heading`
+    covariance : (states, states) of delta = truth - estimate, ordered by `FilterSettings.layout`; read-only
+    temperature : degC, that the IMU reports at this footfall; None where it reports none
     """
 
     index: int
@@ -50,6 +54,9 @@ class Step:
     still_time: float
     position: np.ndarray
     stride: np.ndarray
+    heading_sd: float
+    covariance: np.ndarray
+    temperature: float | None = None
 
 
 class Corrector(Protocol):
@@ -126,27 +133,41 @@ def run_filter(
     found = found or detect(recording, pdr)
     stances, resets = found.stances, found.stances.resets
     update = updates(recording.t, found, None if by_stance else 2 * pdr.stance.reset_s)
-    still_time = _still_time(recording.t, found.score, resets[stances.footfalls])
-
     now = InertialFilter(settings, align(recording, found.rest, start))
-    kept: list[InertialFilter] = []
+    if corrector is None and not smooth:
+        first, footfalls = found.rest.last + 1, resets[stances.footfalls]
+        rows = slice(first, footfalls[-1] + 1)
+        states = _advance(now, recording, rows, update, stops=footfalls - first)
+        return _filtered(states, start, np.full(len(footfalls), np.nan))
+    return _filtered(*_step_by_step(now, recording, found, update, corrector, smooth, start))
+
+
+def _step_by_step(
+    now: InertialFilter,
+    recording: Recording,
+    found: Detected,
+    update: np.ndarray,
+    corrector: Corrector | None,
+    smooth: bool,
+    start: StartPose,
+) -> tuple[States, StartPose, np.ndarray]:
+    """Footfall by footfall, with a heading method or smoothed; returns what `_filtered` takes."""
+    resets, places = found.stances.resets, found.stances.footfalls
+    still_time = _still_time(recording.t, found.score, resets[places])
+    kept: list[States] = []
     nodes = [Node.first(now)] if smooth else []  # one a reset; the first is the rest
-    heading, innovation = start.heading, np.full(len(stances.footfalls), np.nan)
+    heading, innovation = start.heading, np.full(len(places), np.nan)
     applied = getattr(corrector, "applied", lambda turned: None)
-    for i, footfall in enumerate(stances.footfalls):
-        for reset in range(stances.footfalls[i - 1] + 1 if i else 1, footfall + 1):
+    for i, row in enumerate(resets[places]):
+        for reset in range(places[i - 1] + 1 if i else 1, places[i] + 1):
             rows = slice(resets[reset - 1] + 1, resets[reset] + 1)
             if smooth:
                 nodes.append(_node(now, recording, rows, update))
             else:
-                now.advance(recording.t[rows], recording.gyro[rows], recording.accel[rows], update[rows])
+                _advance(now, recording, rows, update)
         heading += float(wrap(now.heading - heading))
         if i > 0 and corrector is not None:
-            before = kept[-1]
-            stride = now.position - before.position
-            said = corrector(
-                Step(i, now.t, heading, now.t - before.t, float(still_time[i]), now.position, stride)
-            )
+            said = corrector(_step(i, now, kept[-1], heading, still_time[i], recording, row))
             if said is not None:
                 innovation[i] = said[0]
                 put_right = now.correct_heading(*said)
@@ -155,11 +176,38 @@ def run_filter(
                 applied(turned)
                 if smooth:
                     nodes[-1] = nodes[-1].with_also(put_right, now)
-        kept.append(now.snapshot())
+        kept.append(now.state())
     if smooth:
-        states = smoothed(nodes)
-        kept = [states[k] for k in stances.footfalls]
-    return _filtered(kept, start, innovation)
+        after = smoothed(nodes)
+        kept = [after[k].state() for k in places]
+    return States.joined(kept), start, innovation
+
+
+def _step(
+    index: int,
+    now: InertialFilter,
+    before: States,
+    heading: float,
+    still_time: float,
+    recording: Recording,
+    row: int,
+) -> Step:
+    """What a corrector is told; `before` is the footfall before, as corrected."""
+    covariance = now.covariance
+    covariance.setflags(write=False)
+    warmth = recording.temperature
+    return Step(
+        index=index,
+        t=now.t,
+        heading=heading,
+        stride_time=now.t - float(before.t[0]),
+        still_time=float(still_time),
+        position=now.position,
+        stride=now.position - before.position[0],
+        heading_sd=now.heading_sd,
+        covariance=covariance,
+        temperature=None if warmth is None else float(warmth[row]),
+    )
 
 
 def run_filters(
@@ -182,6 +230,19 @@ def run_filters(
         raise InputError(f"filter: {len(recordings)} recordings, but {len(starts)} starts")
     with ThreadPoolExecutor(threads) as pool:
         return list(pool.map(lambda one, at: run_filter(one, settings, pdr, at), recordings, starts))
+
+
+def _advance(
+    now: InertialFilter,
+    recording: Recording,
+    rows: slice,
+    update: np.ndarray,
+    stops: Sequence[int] | np.ndarray = (),
+) -> States:
+    """Advance to the end of `rows`."""
+    return now.advance(
+        recording.t[rows], recording.gyro[rows], recording.accel[rows], update[rows], stops=stops
+    )
 
 
 def _node(now: InertialFilter, recording: Recording, rows: slice, update: np.ndarray) -> Node:
@@ -216,14 +277,12 @@ def _still_time(t: np.ndarray, score: np.ndarray, footfalls: np.ndarray) -> np.n
     return t[stop - 1] - t[start]
 
 
-def _filtered(states: Sequence[InertialFilter], start: StartPose, innovation: np.ndarray) -> Filtered:
-    heading = np.unwrap([start.heading, *(state.heading for state in states)])[1:]
+def _filtered(states: States, start: StartPose, innovation: np.ndarray) -> Filtered:
+    heading = np.unwrap([start.heading, *states.heading])[1:]
     return Filtered(
-        footfalls=Footfalls.at(
-            np.array([state.t for state in states]), np.array([state.position for state in states]), heading
-        ),
-        accel_bias=np.array([state.accel_bias for state in states]),
-        gyro_bias=np.array([state.gyro_bias for state in states]),
-        heading_sd=np.array([state.heading_sd for state in states]),
+        footfalls=Footfalls.at(states.t, states.position, heading),
+        accel_bias=states.accel_bias,
+        gyro_bias=states.gyro_bias,
+        heading_sd=states.heading_sd,
         innovation=innovation,
     )

@@ -14,9 +14,8 @@ from footfall.hdr.hde import Hde, Hde2010Params, HdeParams, hde_2010
 from footfall.hdr.ihde import Ihde, IhdeParams, evaluate, reference
 from footfall.hdr.ihde_plus import IhdePlus, IhdePlusParams
 from footfall.hdr.jimenez import FilterHdr, FilterHdrParams, Jimenez, JimenezParams
-from footfall.pdr.filter.run import Step
 from tests.helpers.synthetic_foot import footfalls
-from tests.helpers.walked_steps import walked
+from tests.helpers.walked_steps import told_step, walked
 
 DEG = math.pi / 180
 T = 1.1
@@ -27,7 +26,7 @@ def ask(corrector, headings, stride_time=T):
     strides = [1.4 * np.array([math.cos(heading), math.sin(heading), 0.0]) for heading in headings]
     places = np.cumsum(strides, axis=0)
     return [
-        corrector(Step(i, T * i, float(heading), stride_time, 0.4, place, stride))
+        corrector(told_step(i, float(heading), stride_time, place, stride))
         for i, (heading, place, stride) in enumerate(zip(headings, places, strides, strict=True), start=1)
     ]
 

@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from footfall.conventions import GRAVITY
 from footfall.pdr.filter.ins import Alignment, FilterSettings, InertialFilter, initial_covariance
+from footfall.pdr.filter.layout import ACCEL_BIAS, ATTITUDE, GYRO_BIAS
 from tests.helpers.synthetic_foot import SyntheticWalk
 
 
@@ -60,5 +61,9 @@ def drawn(
     p = initial_covariance(settings, level)
     values, vectors = np.linalg.eigh(p)
     off = vectors @ (np.sqrt(np.maximum(values, 0)) * np.random.default_rng(seed).standard_normal(len(p)))
-    wrong = (Rotation.from_rotvec(off[6:9]).inv() * attitude).as_quat(scalar_first=True)
-    return InertialFilter(settings, Alignment(0.0, wrong, np.zeros(3), level.force)), off[9:12], off[12:15]
+    wrong = (Rotation.from_rotvec(off[ATTITUDE]).inv() * attitude).as_quat(scalar_first=True)
+    return (
+        InertialFilter(settings, Alignment(0.0, wrong, np.zeros(3), level.force)),
+        off[ACCEL_BIAS],
+        off[GYRO_BIAS],
+    )

@@ -24,7 +24,19 @@ def walked(course, toe_out=0.0, *, length=1.4, drift=0.0, yaw_off=0.0, stride_ti
     told = course + wrong - drift / 2
     stride = length * np.column_stack([np.cos(told), np.sin(told), np.zeros_like(told)])
     position = np.cumsum(stride, axis=0)
-    return [
-        Step(i + 1, T * (i + 1), float(yaw[i]), stride_time, 0.4, position[i], stride[i])
-        for i in range(len(course))
-    ]
+    return [told_step(i + 1, float(yaw[i]), stride_time, position[i], stride[i]) for i in range(len(course))]
+
+
+def told_step(index, heading, stride_time, position, stride):
+    """A step by a filter that is sure of its heading to a degree."""
+    return Step(
+        index=index,
+        t=T * index,
+        heading=heading,
+        stride_time=stride_time,
+        still_time=0.4,
+        position=position,
+        stride=stride,
+        heading_sd=DEG,
+        covariance=DEG**2 * np.eye(15),
+    )

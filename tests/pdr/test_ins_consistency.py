@@ -5,6 +5,7 @@ import pytest
 from scipy import stats
 
 from footfall.pdr.filter.ins import FilterSettings, frozen
+from footfall.pdr.filter.layout import ATTITUDE, STATE
 from footfall.pdr.filter.run import run_filter
 from tests.helpers.filter_walks import drawn, error_of
 from tests.helpers.synthetic_foot import walk
@@ -32,9 +33,9 @@ def filtered(truth, settings, seed):
         found.advance(truth.t[part], gyro[part], accel[part], np.zeros(stop - last, dtype=int))
         # A foot that is called still moves by what the filter believes of it.
         creep = settings.sigma_velocity * rng.standard_normal(3)
-        found._x[4:7] += creep
+        found._x[STATE["velocity"]] += creep
         found.rest()
-        found._x[4:7] -= creep
+        found._x[STATE["velocity"]] -= creep
         rows.append((error_of(found, truth, accel_bias, gyro_bias), found.covariance))
         last = stop
     return rows
@@ -64,7 +65,7 @@ def test_more_noise_than_believed_is_noticed(still_foot):
     for seed in range(20):
         noisy = filtered(still_foot, FilterSettings(**{**NOISE, "gyro_noise": 3e-3}), seed)
         quiet = filtered(still_foot, honest, seed)
-        error, p = noisy[-1][0][6:9], quiet[-1][1][6:9, 6:9]
+        error, p = noisy[-1][0][ATTITUDE], quiet[-1][1][ATTITUDE, ATTITUDE]
         nees.append(error @ np.linalg.solve(p, error))
     assert np.mean(nees) > stats.chi2.ppf(0.9999, 3 * 20) / 20
 

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from footfall.errors import InputError
 from footfall.pdr.filter._plain import PlainFilter
 from footfall.pdr.filter.ins import FilterSettings, InertialFilter, frozen
+from footfall.pdr.filter.layout import ERROR, HEADING, STATE, STATES, VELOCITY, Measurement
 from tests.helpers.filter_walks import alignment, tossed
 
 KINDS = {
@@ -66,6 +67,63 @@ def test_streaming_equals_batch(kind, cuts):
     assert split.t == whole.t
 
 
+@pytest.mark.parametrize("kind", KINDS)
+@given(seed=st.integers(0, 2**32 - 1), rows=st.integers(1, 4))
+@settings(max_examples=10)
+def test_any_measurement_is_taken_in(kind, seed, rows):
+    """Row by row as all at once, where the rows are independent."""
+    rng = np.random.default_rng(seed)
+    kind = replace(KINDS[kind], sigma_velocity=1.0, sigma_rate=5.0)
+    t, gyro, accel, update = (column[:100] for column in tossed(5))
+    compiled, plain = InertialFilter(kind, alignment()), PlainFilter(kind, alignment())
+    compiled.advance(t, gyro, accel, update)
+    for k in range(len(t)):
+        plain.take(t[k], gyro[k], accel[k], update[k])
+    h = rng.normal(size=(rows, kind.states)) * (rng.random((rows, kind.states)) < 0.3)
+    z, r = rng.normal(0, 0.1, rows), rng.uniform(0.5, 2.0, rows)
+    put_right = compiled.update(Measurement(z, h, r))
+    p = plain.covariance
+    gain = p @ h.T @ np.linalg.inv(h @ p @ h.T + np.diag(r))
+    np.testing.assert_allclose(put_right, gain @ z, rtol=1e-6, atol=1e-9)
+    left = np.eye(len(p)) - gain @ h
+    plain.covariance = left @ p @ left.T + gain @ np.diag(r) @ gain.T
+    plain._put_right(gain @ z)
+    assert_same(compiled, plain, rtol=1e-6)
+
+
+@pytest.mark.parametrize("stops", [[], [-1], [-1, 0, 57, 99], [99], range(-1, 100)])
+def test_states_are_kept_at_stops(stops):
+    t, gyro, accel, update = (column[:100] for column in tossed(6))
+    found = InertialFilter(FilterSettings(g_sensitivity=True), alignment())
+    one = found.snapshot()
+    states = found.advance(t, gyro, accel, update, stops=stops)
+    assert len(states.t) == len(states.state) == len(states.covariance) == len(stops)
+    done = -1
+    for place, stop in enumerate(stops):
+        rows = slice(done + 1, stop + 1)
+        one.advance(t[rows], gyro[rows], accel[rows], update[rows])
+        done = stop
+        assert states.t[place] == one.t
+        for name in ("position", "accel_bias", "gyro_bias"):
+            np.testing.assert_array_equal(getattr(states, name)[place], getattr(one, name))
+        np.testing.assert_array_equal(states.covariance[place], one.covariance)
+        assert states.heading[place] == pytest.approx(one.heading, abs=1e-15)
+        assert states.heading_sd[place] == one.heading_sd
+    assert found.t == t[-1]
+
+
+def test_each_error_has_its_place():
+    """Nothing overlaps, nothing is left out, and what is optional comes last."""
+    for layout in (ERROR, STATE):
+        places = [k for part in layout.values() for k in range(part.start, part.stop)]
+        assert places == list(range(len(places)))
+    wide, narrow = FilterSettings(g_sensitivity=True), FilterSettings()
+    assert (wide.states, narrow.states) == (24, 15)
+    assert list(wide.layout)[:-1] == list(narrow.layout)
+    assert all(wide.layout[name] == part for name, part in narrow.layout.items())
+    assert (HEADING, STATES) == (8, 25)
+
+
 def test_an_update_is_the_same_in_the_batch_and_by_hand():
     t, gyro, accel, _ = tossed(3)
     last = np.zeros(400, dtype=int)
@@ -78,7 +136,7 @@ def test_an_update_is_the_same_in_the_batch_and_by_hand():
         put_right = asked.rest(2)
         np.testing.assert_array_equal(asked.covariance, flagged.covariance)
         np.testing.assert_array_equal(asked.position, flagged.position)
-        np.testing.assert_allclose(asked.velocity, before + put_right[3:6])
+        np.testing.assert_allclose(asked.velocity, before + put_right[VELOCITY])
 
 
 @given(

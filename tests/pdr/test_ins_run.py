@@ -1,6 +1,7 @@
 """A recording through the filter: start, stances, heading methods, gaps, smoothing, several at once."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,8 +11,10 @@ from footfall.conventions import GRAVITY, wrap
 from footfall.errors import InputError
 from footfall.hdr.methods import METHODS, Reckoning, tracks
 from footfall.pdr.filter.ins import Alignment, FilterSettings, InertialFilter, frozen
+from footfall.pdr.filter.layout import HEADING
 from footfall.pdr.filter.run import run_filter, run_filters
-from footfall.pdr.reckoning import StartPose, dead_reckon, detect
+from footfall.pdr.reckoning import PdrParams, StartPose, dead_reckon, detect
+from footfall.pdr.stance import Stances
 from footfall.recording import Recording
 from tests.helpers.synthetic_foot import walk
 
@@ -243,3 +246,53 @@ def test_the_methods_carry_their_evidence_and_settings(bend):
     for track in found.values():
         assert set(track.evidence) == {"gyro_bias_x", "gyro_bias_y", "gyro_bias_z", "heading_sd"}
         assert track.units["heading_sd"] == "rad"
+
+
+def test_a_corrector_is_told_what_the_filter_knows(bend):
+    """After the footfall's update and before its own correction; the temperature is that of the footfall."""
+    recording = bend.recording()
+    warm = replace(recording, temperature=20.0 + np.arange(len(recording.t)))
+    told, cold = Told(bend, np.radians(0.5)), Told(bend, np.radians(0.5))
+    settings = FilterSettings(heading_sd=np.radians(3.0), g_sensitivity=True)
+    found = run_filter(warm, settings, corrector=told)
+    run_filter(recording, settings, corrector=cold)
+    rows = np.searchsorted(recording.t, found.footfalls.t - 1e-9)
+    for step, without in zip(told.steps, cold.steps, strict=True):
+        assert step.temperature == 20.0 + rows[step.index]
+        assert without.temperature is None
+        assert step.covariance.shape == (settings.states, settings.states)
+        assert step.heading_sd == pytest.approx(np.sqrt(step.covariance[HEADING, HEADING]), rel=0.2)
+        with pytest.raises(ValueError, match="read-only"):
+            step.covariance[0, 0] = 1.0
+        if step.index % 2:  # nothing is said at these
+            assert step.heading_sd == found.heading_sd[step.index]
+        else:
+            assert step.heading_sd > found.heading_sd[step.index]
+    assert told.steps[0].heading_sd > np.radians(2.9)
+    assert told.steps[-1].heading_sd < np.radians(1.0)
+
+
+def test_a_corrector_that_says_nothing_changes_nothing(bend):
+    """Footfall by footfall or all at once."""
+    recording = bend.recording(gyro_error=0.001)
+    for settings in (FilterSettings(), FilterSettings.paper()):
+        alone, asked = (run_filter(recording, settings, corrector=one) for one in (None, lambda step: None))
+        for name in ("position", "heading", "t"):
+            np.testing.assert_array_equal(getattr(alone.footfalls, name), getattr(asked.footfalls, name))
+        np.testing.assert_array_equal(alone.gyro_bias, asked.gyro_bias)
+        np.testing.assert_array_equal(alone.heading_sd, asked.heading_sd)
+        assert np.isnan(asked.innovation).all()
+
+
+@pytest.mark.parametrize("corrector", [None, lambda step: None])
+def test_who_leaves_straight_from_the_rest_has_it_for_footfall_0(bend, corrector):
+    """There is no reset between the averaged part and the first stride."""
+    recording = bend.recording()
+    found = detect(recording, PdrParams())
+    first, resets = found.stances.footfalls[0], found.stances.resets
+    stances = Stances(resets=resets[first:], footfalls=found.stances.footfalls - first)
+    leaving = replace(found, stances=stances, rest=replace(found.rest, last=int(resets[first])))
+    filtered = run_filter(recording, found=leaving, corrector=corrector)
+    np.testing.assert_array_equal(filtered.footfalls.position[0], 0.0)
+    assert filtered.footfalls.t[0] == recording.t[resets[first]]
+    assert len(filtered.footfalls) == len(BEND)
