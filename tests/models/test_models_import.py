@@ -1,12 +1,8 @@
-"""What importing the room costs, and that its compiled kernels are never stale."""
+"""What importing the room costs."""
 
 import json
-import os
 import subprocess
 import sys
-from pathlib import Path
-
-from footfall.models.imu import effects
 
 
 def modules_after(statement: str) -> set[str]:
@@ -20,16 +16,3 @@ def test_a_sheet_and_a_unit_need_no_compiler_and_a_recording_no_signal_processin
     recording = modules_after("import footfall.simulate.record")
     assert "numba" in recording
     assert "scipy.signal" not in recording
-
-
-def test_a_stale_kernel_is_forgotten_on_import():
-    cache = Path(effects.__file__).parent / "__pycache__"
-    cache.mkdir(exist_ok=True)
-    stale = cache / "_kernels.no_such_kernel-1.py311.nbi"
-    stale.write_bytes(b"")
-    os.utime(stale, (0, 0))
-    try:
-        modules_after("import footfall.models.imu")
-        assert not stale.exists()
-    finally:
-        stale.unlink(missing_ok=True)
