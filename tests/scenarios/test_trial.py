@@ -1,4 +1,4 @@
-"""The atom and how it is spread: rows as the chain by hand gives them, shared walks, failures that are rows."""
+"""The atom and how it is spread: rows as the chain by hand gives them, shared walks, failures as rows."""
 
 import subprocess
 import sys
