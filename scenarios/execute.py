@@ -19,7 +19,8 @@ from typing import Any
 from footfall.errors import InputError
 from footfall.models.policy import stock_policy
 from footfall.scenarios.trial import Outcome, Trial, failed, perform, walk_of
-from footfall.simulate.cache import plan_key
+from footfall.scenarios.warm import warm
+from footfall.simulate.cache import is_cached, plan_key
 from footfall.simulate.walk import Walk
 
 CHUNK = 10  # trials that a worker does in one go, with one walk in memory
@@ -36,12 +37,14 @@ class Progress:
     ----------
     walks : what is walked, in order; metres : of each, walked so far
     trials, done : how many in all, and done
+    compiling : kernels are being made ready for all workers
     """
 
     walks: tuple[Trial, ...]
     metres: list[float]
     trials: int
     done: int = 0
+    compiling: bool = False
 
 
 @dataclass(frozen=True)
@@ -93,7 +96,13 @@ def execute(
         folder = None if use_cache else Path(stack.enter_context(tempfile.TemporaryDirectory()))
         workers = min(workers or cores(), len(trials))
         run = _here if workers <= 1 else partial(_spread, workers=workers)
-        yield from _in_order(run(work, folder, frozenset(keep), progress, on_progress or (lambda now: None)))
+        report = on_progress or (lambda now: None)
+        if workers > 1:  # or every worker would compile the same
+            progress.compiling = True
+            report(progress)
+            warm(trials[0], walks=not all(is_cached(key, folder) for key in groups))
+            progress.compiling = False
+        yield from _in_order(run(work, folder, frozenset(keep), progress, report))
 
 
 def _in_order(found: Iterator[tuple[int, Outcome]]) -> Iterator[Outcome]:

@@ -54,6 +54,11 @@ def plan_key(plan: Plan, policy: Policy) -> str:
     return digest_of(versions(), stage_digest("walk"), policy.digest, plan.digest)[:32]
 
 
+def is_cached(key: str, folder: Path | None = None) -> bool:
+    """Whether a file of this `plan_key` is there; only reading it tells that it is whole."""
+    return _file(key, folder).is_file()
+
+
 def cached_walk(
     plan: Plan,
     *,
@@ -78,7 +83,7 @@ def cached_walk(
         As `walk`; or the folder cannot be written, which is told before walking.
     """
     policy = policy or stock_policy()
-    path = (folder or cache_folder()) / f"{plan_key(plan, policy)}.parquet"
+    path = _file(plan_key(plan, policy), folder)
     found = _read(path)
     if found is None:
         with _alone(path, on_wait):
@@ -114,6 +119,10 @@ def prune(keep: int, folder: Path | None = None) -> list[CachedWalk]:
             _remove(one.file)
             removed.append(one)
     return removed
+
+
+def _file(key: str, folder: Path | None) -> Path:
+    return (folder or cache_folder()) / f"{key}.parquet"
 
 
 def _read(path: Path) -> Walk | None:

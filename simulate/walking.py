@@ -12,9 +12,11 @@ import numpy as np
 
 from footfall.conventions import GRAVITY, heading_of
 from footfall.models import body
+from footfall.models.body import Ground
 from footfall.models.policy import Policy, stock_policy
+from footfall.models.route import Route
 from footfall.runs import runs
-from footfall.simulate.episode import STAND_S, FallError, planned_pushes, stroll
+from footfall.simulate.episode import STAND_S, Episode, FallError, planned_pushes, stroll
 from footfall.simulate.identity import walk_identity
 from footfall.simulate.plan import PHYSICS_STEP, Plan, versions
 from footfall.simulate.truth import ImuTruth, at_rest, divisor, imu_truth
@@ -33,6 +35,25 @@ class _Record:
     quaternion: np.ndarray
     contact: np.ndarray
     stands: bool
+
+
+def warm() -> None:
+    """Compile what walks need, or find it in numba's cache: some steps of a walker on a slope."""
+    policy, s = stock_policy(), np.arange(101) * 0.1
+    nil = np.zeros_like(s)
+    ground = Ground(-12.0, -12.0, 1.0, np.zeros((36, 36), dtype=np.float32))
+    plan = Plan("warm", Route(s, s, nil, nil, nil, nil), ground=ground)
+    episode = Episode(plan, policy.feedback_gains, stand=1.0)
+    walkers = episode.walkers
+    try:
+        walkers.step(policy(walkers.observe()))
+        walkers.variability.draw(np.zeros(1, dtype=np.intp), np.random.default_rng(0))
+        episode.steer()
+    finally:
+        walkers.close()
+    pose = np.zeros((100, 7))
+    pose[:, 3] = 1.0
+    imu_truth(pose[:, :3], pose[:, 3:], PHYSICS_STEP, 5)
 
 
 def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | None) -> _Record:

@@ -24,7 +24,12 @@ def showing() -> Iterator[Callable[[Done], None]]:
         def show(now: Done) -> None:
             if not lengths:
                 lengths.extend(trial.plan.route.length for trial in now.walks)
-            bars.update(walked, completed=round(sum(now.metres)), total=round(sum(lengths)))
+            bars.update(
+                walked,
+                description="compiling, once" if now.compiling else "metres walked",
+                completed=round(sum(now.metres)),
+                total=round(sum(lengths)),
+            )
             bars.update(tried, completed=now.done, total=now.trials)
 
         yield show
