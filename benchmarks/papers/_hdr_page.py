@@ -11,7 +11,7 @@ from rich.table import Table
 
 from benchmarks._page import Sheet
 from footfall.scenarios.judge.papers import HDR_TABLE_2_MEAN
-from footfall.scenarios.report.tables import extent, spread
+from footfall.scenarios.judge.statistics import extent, spread
 
 ERRORS = {"average": 1, "final": 0}  # columns of the errors, in the order in which the paper gives them
 STATISTICS = ("mean", "median", "p90")

@@ -13,6 +13,7 @@ from rich.text import Text
 
 from footfall.scenarios.judge.papers import HDR_TABLE_2, HDR_TABLE_2_MEAN, IHDE_TABLE_2, range_text
 from footfall.scenarios.judge.score import Align, Score, improvement, mean_score
+from footfall.scenarios.judge.statistics import extent, spread
 from footfall.simulate.plan import versions
 
 if TYPE_CHECKING:
@@ -20,21 +21,6 @@ if TYPE_CHECKING:
     from footfall.scenarios.run import Result
 
 _ERRORS = ("heading_error_final_deg", "heading_error_mean_deg")
-
-
-def spread(values: Sequence[float]) -> dict[str, float]:
-    """Mean, median and 90th percentile."""
-    array = np.asarray(values, dtype=float)
-    return {
-        "mean": float(array.mean()),
-        "median": float(np.median(array)),
-        "p90": float(np.percentile(array, 90)),
-    }
-
-
-def extent(values: Sequence[float]) -> dict[str, float]:
-    """Median, smallest and largest."""
-    return {"median": float(np.median(values)), "smallest": float(min(values)), "largest": float(max(values))}
 
 
 def scores_by_method(rows: Sequence[Mapping[str, Score]]) -> dict[str, list[Score]]:

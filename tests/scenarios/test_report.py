@@ -12,8 +12,9 @@ from rich.console import Console
 
 from footfall.scenarios.judge.papers import HDR_TABLE_2, HDR_TABLE_2_MEAN
 from footfall.scenarios.judge.score import Score, mean_score
+from footfall.scenarios.judge.statistics import extent, spread
 from footfall.scenarios.report import figures
-from footfall.scenarios.report.tables import as_json, extent, paper_table, path_line, run_report, spread
+from footfall.scenarios.report.tables import as_json, paper_table, path_line, run_report
 from footfall.scenarios.run import parts, perform_run
 from footfall.scenarios.scenario import build_scenario, load_scenario
 from footfall.scenarios.trial import setup
