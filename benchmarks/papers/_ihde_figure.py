@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from footfall.pdr.track import Track
 from footfall.scenarios.judge.papers import IHDE_TABLE_2
 from footfall.scenarios.report.figures import colours_of, head, label_of, maps, new_panels, save
 from footfall.scenarios.report.heading_figures import evaluation
 from footfall.scenarios.run import Part, Result, perform_run
 from footfall.scenarios.scenario import Scenario
-from footfall.scenarios.trial import Trial, reckoning, setup
+from footfall.scenarios.trial import Trial, setup
 
 if TYPE_CHECKING:
     from benchmarks.papers.ihde_table2 import Tuned
@@ -26,11 +24,9 @@ _SHOWN = ("iez", "hde", "ihde", "ihde-plus")
 
 def _result(scenario: Scenario, seed: int, tuned: Tuned) -> Result:
     """One walk with the unit of its seed, navigated as tuned."""
-    made = setup(scenario, methods=("pdr",))
+    made = setup(scenario, methods=[tuned.ways()[name].method(name) for name in _SHOWN])
     (result,) = perform_run([Part(Trial(made, seed - scenario.seeds.base, seed, seed, seed))])
-    given, ways = reckoning(made, result.walk, result.recording), tuned.ways()
-    tracks: dict[str, Track] = {name: ways[name].track(given) for name in _SHOWN}
-    return replace(result, tracks=tracks)
+    return result
 
 
 def return_errors(errors: Mapping[str, Mapping[str, np.ndarray]]) -> Figure:

@@ -16,29 +16,23 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from itertools import product
+from dataclasses import dataclass
 from math import inf
 from pathlib import Path
 
 import numpy as np
 from rich.table import Table
 
-from benchmarks._common import (
-    Case,
-    Wearing,
-    dead_reckoned,
-    options,
-    out,
-    shared_out,
-    within_paper,
-    write_json,
-)
-from benchmarks._page import by_name, fill
+from benchmarks._common import dealt, heard, options, out, within_paper, write_json
+from benchmarks._page import Sheet, by_name, fill
+from benchmarks.papers._hdr_cases import Case, dead_reckoned
 from benchmarks.papers._hdr_figure import draw
 from benchmarks.papers._hdr_page import Group, Judged, mounts_sheet, summary
+from footfall.errors import InputError
 from footfall.hdr.hdr import HdrParams, headings
 from footfall.scenarios.scenario import Scenario, load_scenario
+from footfall.scenarios.studies.tune import Tuned, grid, require_apart, tune
+from footfall.scenarios.trial import Trial, setup
 
 I_C = (0.002, 0.003, 0.004, 0.005, 0.006, 0.007, 0.010, 0.015, 0.020)  # deg/s
 THETA_W = (0.15, 0.20, 0.25, 0.30, 0.35, 0.40, 0.50, 0.70, 1.00, inf)  # deg/s
@@ -58,11 +52,6 @@ class Study:
         """(c,) bool."""
         return within_paper(self.uncorrected)
 
-    def average_map(self, chosen: np.ndarray) -> np.ndarray:
-        """(i_c, theta_w) mean over the `chosen` cases (c,) of the average error (deg)."""
-        grid = self.corrected[: len(I_C) * len(THETA_W), chosen, AVERAGE]
-        return grid.mean(axis=1).reshape(len(I_C), len(THETA_W))
-
 
 def study(cases: Sequence[Case], sets: Sequence[HdrParams]) -> Study:
     """Correct every unit with every parameter set."""
@@ -71,17 +60,30 @@ def study(cases: Sequence[Case], sets: Sequence[HdrParams]) -> Study:
     return Study(cases, np.array([case.uncorrected_deg() for case in cases]), np.stack(corrected, axis=1))
 
 
-def reckoned(todo: Sequence[Wearing], processes: int, label: str) -> list[list[Case]]:
+def reckoned(todo: Sequence[Trial], processes: int, label: str) -> list[list[Case]]:
     """Dead-reckon every unit: for each noise the cases, in the order of the units."""
     cases = dead_reckoned(todo, processes, label)
     if not cases:
         raise SystemExit(f"{label}: no walk came to its end")
-    return [[case for case in cases if case.noise == noise] for noise in sorted({one.noise for one in cases})]
+    rounds: dict[int, list[Case]] = {}
+    for case in cases:
+        rounds.setdefault(case.trial.noise_seed - case.trial.unit_seed, []).append(case)
+    return [rounds[noise] for noise in sorted(rounds)]
+
+
+def average_deg(case: Case, sets: Sequence[HdrParams]) -> np.ndarray:
+    """(s,) average heading error of a case by parameter set."""
+    return case.corrected_deg(headings([case.footfalls], sets)[0])[:, AVERAGE]
 
 
 def name_of(params: HdrParams) -> str:
     """The pair in deg/s."""
     return f"i_c {np.degrees(params.i_c):.3f}, theta_w {np.degrees(params.theta_w):.2f}"
+
+
+def as_map(errors: np.ndarray) -> np.ndarray:
+    """(i_c, theta_w) mean over cases of their errors (c, sets)."""
+    return np.asarray(errors.mean(axis=0).reshape(len(I_C), len(THETA_W)))
 
 
 def print_map(values: np.ndarray, title: str) -> None:
@@ -126,25 +128,37 @@ def judge(own: np.ndarray, methods: Mapping[str, np.ndarray], title: str) -> Jud
     return found
 
 
-def sides(scenario: Scenario, chosen: argparse.Namespace) -> tuple[list[Wearing], list[Wearing]]:
+def sides(scenario: Scenario, chosen: argparse.Namespace) -> tuple[list[Trial], list[Trial]]:
     """Who wears what on which walk: for tuning, and for judging, where the scenario's own units come in too.
 
     Raises
     ------
-    SystemExit
+    InputError
         The two sides share a walk seed or a unit.
     """
+    worn = setup(scenario, methods=())
     first = scenario.seeds.base if chosen.walk_seed is None else chosen.walk_seed
     drawn = range(chosen.unit_seed, chosen.unit_seed + chosen.units)
-    judged = shared_out(scenario, chosen.walks, first, drawn, chosen.noises)
+    judged = dealt(worn, chosen.walks, first, drawn, chosen.noises)
     if scenario.seeds.units:
-        judged = [replace(one, units=(*one.units, scenario.unit_seed(one.number))) for one in judged]
+        for number in range(chosen.walks):
+            unit = scenario.unit_seed(number)
+            judged += heard(Trial(worn, number, first + number, unit, unit), chosen.noises)
     seeds = range(chosen.tuning_unit_seed, chosen.tuning_unit_seed + chosen.tuning_units)
-    tuning = shared_out(scenario, chosen.tuning_walks, chosen.tuning_walk_seed, seeds)
-    reported = {*drawn, *(scenario.seeds.units or ())}
-    if reported & set(seeds) or {one.seed for one in judged} & {one.seed for one in tuning}:
-        raise SystemExit("tuning and judging share a walk seed or a unit: choose other seeds")
+    tuning = dealt(worn, chosen.tuning_walks, chosen.tuning_walk_seed, seeds)
+    require_apart("walk seed", (one.walk_seed for one in tuning), (one.walk_seed for one in judged))
+    require_apart("unit", seeds, (*drawn, *(scenario.seeds.units or ())))
     return tuning, judged
+
+
+def print_tuned(tuned: Tuned[HdrParams]) -> None:
+    """Default and tuned, on both sides."""
+    title = f"Average heading error (deg); tuned: {name_of(tuned.chosen)} deg/s"
+    sheet = Sheet("tuned", title, ["", "", "mean", "median", "p90"], left=2)
+    for side, by in tuned.figures.items():
+        for name, found in by.items():
+            sheet.rows.append([side, name, *(f"{value:.1f}" for value in found.values())])
+    sheet.show()
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -169,50 +183,55 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--page", type=Path, metavar="MD", help="fill its tables")
     chosen = parser.parse_args(arguments)
 
-    grid = [
-        HdrParams.from_degrees(tau_s=chosen.tau, i_c_deg_s=i_c, theta_w_deg_s=theta_w)
-        for i_c, theta_w in product(I_C, THETA_W)
-    ]
+    sets = grid(HdrParams(tau_s=chosen.tau), {"i_c_deg_s": I_C, "theta_w_deg_s": THETA_W})
     scenarios = {one.name: one for one in map(load_scenario, chosen.scenarios)}
     first = next(iter(scenarios))
-    moved = {f"{first}, {mount}": scenarios[first].changed("sensor", mount=mount) for mount in chosen.mounts}
-    todo = {title: sides(scenario, chosen) for title, scenario in (scenarios | moved).items()}
-    (tuned_on,) = reckoned(todo[first][0], chosen.processes, f"tuning on {first}")
-    tuning = study(tuned_on, grid)
-    fit = tuning.in_range if tuning.in_range.any() else np.ones(len(tuning.cases), bool)
-    tuned_map = tuning.average_map(fit)
-    best = grid[int(np.argmin(tuned_map))]
-    count = f"{fit.sum()} of {len(tuning.cases)} tuning units" + (
-        "" if tuning.in_range.any() else " (none in range)"
-    )
+    scenarios |= {
+        f"{first}, {mount}": scenarios[first].changed("sensor", mount=mount) for mount in chosen.mounts
+    }
+    try:
+        todo = {title: sides(scenario, chosen) for title, scenario in scenarios.items()}
+    except InputError as error:
+        raise SystemExit(str(error)) from None
+    (tuning,) = reckoned(todo[first][0], chosen.processes, f"tuning on {first}")
+    rounds = {
+        title: reckoned(judged, chosen.processes, f"judging on {title}")
+        for title, (_, judged) in todo.items()
+    }
+    fits = [case for case in tuning if within_paper(case.uncorrected_deg())]
+    drawn = [
+        case for case in rounds[first][0] if case.trial.unit_seed not in (scenarios[first].seeds.units or ())
+    ]
+    tuned = tune(average_deg, sets, HdrParams(), train=fits or tuning, test=drawn)
+    best, tuned_map = tuned.chosen, as_map(tuned.errors)
+    count = f"{len(fits or tuning)} of {len(tuning)} tuning units" + ("" if fits else " (none in range)")
     print_map(tuned_map, f"Average heading error (deg), {first}, mean over {count}")
-    out.print(f"Chosen: {name_of(best)} deg/s", highlight=False)
+    print_tuned(tuned)
 
     judged: dict[str, Judged] = {}
-    for title, (_, wearings) in todo.items():
-        rounds = reckoned(wearings, chosen.processes, f"judging on {title}")
-        found = study(rounds[0], [*grid, best, HdrParams()])
-        heard = [found, *(study(cases, [best, HdrParams()]) for cases in rounds[1:])]
+    for title, heard_all in rounds.items():
+        found = study(heard_all[0], [*sets, best, HdrParams()])
+        all_found = [found, *(study(cases, [best, HdrParams()]) for cases in heard_all[1:])]
         methods = {
-            "uncorrected": np.stack([one.uncorrected for one in heard]),
-            f"HDR, default ({name_of(HdrParams())})": np.stack([one.corrected[-1] for one in heard]),
-            f"HDR, tuned ({name_of(best)})": np.stack([one.corrected[-2] for one in heard]),
+            "uncorrected": np.stack([one.uncorrected for one in all_found]),
+            f"HDR, default ({name_of(HdrParams())})": np.stack([one.corrected[-1] for one in all_found]),
+            f"HDR, tuned ({name_of(best)})": np.stack([one.corrected[-2] for one in all_found]),
         }
         if best == HdrParams():
             methods.popitem()
-        scenario = (scenarios | moved)[title]
-        own = np.isin([case.unit for case in found.cases], scenario.seeds.units or ())
+        own = np.isin([case.trial.unit_seed for case in found.cases], scenarios[title].seeds.units or ())
         judged[title] = judge(own, methods, title)
         if title == first:
             fit = ~own & found.in_range
-            judged_map = found.average_map(fit if fit.any() else ~own)
+            over = fit if fit.any() else ~own
+            judged_map = as_map(found.corrected[: len(sets), over, AVERAGE].T)
             print_map(judged_map, "The same map over the judged units: hindsight, not used")
             if chosen.figure is not None:
                 alone = {name: errors[0] for name, errors in methods.items()}
                 draw(chosen.figure, I_C, THETA_W, (tuned_map, judged_map), alone, found.in_range)
     if chosen.page:
         sheets = [judged[first].sheet(), judged[first].noise_sheet()]
-        fill(chosen.page, by_name([*sheets, mounts_sheet(judged)] if moved else sheets))
+        fill(chosen.page, by_name([*sheets, mounts_sheet(judged)] if chosen.mounts else sheets))
     document = {
         "tau_s": chosen.tau,
         "i_c_deg_s": I_C,

@@ -11,31 +11,28 @@ python -m benchmarks.papers.iez_false_bias --page docs/iez.md --figures docs/ima
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks._common import options, run_all, write_json
+from benchmarks._common import options, outcomes, write_json
 from benchmarks._page import Sheet, by_name, fill
 from benchmarks.papers._false_bias import PAPER, PARTS, Feet, all_but, drive, without
 from benchmarks.papers._false_bias_figures import cause, cure
 from benchmarks.validation._real import BESIDE, find
-from footfall.hdr.filtered import filter_track
-from footfall.hdr.methods import Reckoning, on_papers_filter, pdr_track
-from footfall.models.imu import draw_unit, load_spec
+from footfall.hdr.methods import METHODS
+from footfall.hdr.tracks import Reckoning, pdr_track
 from footfall.models.policy import stock_policy
 from footfall.pdr.detectors import DETECTORS
 from footfall.pdr.filter.ins import FilterSettings, frozen
 from footfall.pdr.reckoning import PdrParams
 from footfall.pdr.rest import still_time
 from footfall.scenarios.judge.papers import IHDE_TABLE_2, range_text
-from footfall.scenarios.judge.score import compare, score
+from footfall.scenarios.judge.score import compare
 from footfall.scenarios.scenario import Scenario, load_scenario
-from footfall.scenarios.trial import reckoning, setup, start_pose
-from footfall.simulate.cache import cached_walk
-from footfall.simulate.record import record
+from footfall.scenarios.trial import Trial, reckoning, recording_of, setup, walk_of
 
 SIGMA_V = (0.01, 0.03, 0.1)  # m/s
 OURS = FilterSettings()
@@ -53,9 +50,11 @@ def settings_of(sigma_v: float, update: str, states: int) -> FilterSettings:
 
 def perfect(scenario: Scenario) -> Feet:
     """The scenario's first walk, in a perfect IMU."""
-    walk = cached_walk(scenario.plan(0))
-    recording = record(walk, draw_unit(load_spec("perfect"), 0), seed=0)
-    reckoned = Reckoning(recording, start_pose(walk), PdrParams(detector=GLRT))
+    worn = setup(scenario, imu="perfect", methods=())
+    worn = replace(worn, pdr=replace(worn.pdr, detector=GLRT))
+    trial = Trial(worn, 0, scenario.seeds.base, unit_seed=0, noise_seed=0)
+    walk = walk_of(trial)
+    reckoned = reckoning(worn, walk, recording_of(trial, walk))
     truth = compare(pdr_track(reckoned.footfalls), walk)
     return Feet("simulated, perfect IMU", reckoned, reckoned.footfalls.heading - truth.heading_error)
 
@@ -119,27 +118,20 @@ def by_detector(all_feet: Sequence[Feet]) -> Rows:
     return rows
 
 
-@dataclass(frozen=True)
-class Job:
-    """One walk of one of the paper's tests."""
+def paper_trials(test: str, walks: int) -> list[Trial]:
+    """Each walk of one of the paper's tests with its unit of the test's IMU, and with a perfect one.
 
-    scenario: str
-    number: int
-
-
-def walk_test(job: Job) -> dict[str, float]:
-    """Return error (%) of each filter on one walk with its unit of the scenario's IMU."""
-    scenario = load_scenario(job.scenario)
-    walk = cached_walk(scenario.plan(job.number))
-    seed = scenario.unit_seed(job.number)
-    recording = record(walk, draw_unit(load_spec(scenario.imu), seed), seed=seed)
-    still = record(walk, draw_unit(load_spec("perfect"), 0), seed=0)
-    errors = {}
-    for name, settings in filters().items():
-        for unit, signal in (("", recording), (", perfect IMU", still)):
-            found = on_papers_filter(reckoning(setup(scenario), walk, signal)).filtered(settings)
-            errors[name + unit] = score(filter_track(found, settings, name=name), walk).return_error_pct
-    return errors
+    Without the bias that the scenario gives every gyro: what is left is the filter's own.
+    """
+    scenario = load_scenario(test).changed("sensor", bias_shift_deg_s=0.0)
+    ways = [replace(METHODS["iez-paper"], name=name, params=params) for name, params in filters().items()]
+    worn, still = setup(scenario, methods=ways), setup(scenario, imu="perfect", methods=ways)
+    base, trials = scenario.seeds.base, []
+    for number in range(walks):
+        unit = scenario.unit_seed(number)
+        trials.append(Trial(worn, number, base + number, unit, unit))
+        trials.append(Trial(still, number, base + number, unit_seed=0, noise_seed=0))
+    return trials
 
 
 def filters() -> dict[str, FilterSettings]:
@@ -153,16 +145,19 @@ def filters() -> dict[str, FilterSettings]:
 
 def paper_tests(walks: int, processes: int) -> Rows:
     """Median return errors beside the paper's IEZ row."""
-    jobs = [Job(test, number) for test in IHDE_TABLE_2 for number in range(walks)]
-    done = list(zip(jobs, run_all(walk_test, jobs, processes, "the paper's tests"), strict=True))
+    trials = [trial for test in IHDE_TABLE_2 for trial in paper_trials(test, walks)]
+    errors: dict[tuple[str, str, str], list[float]] = {}
+    for row in (row for one in outcomes(trials, processes, "the paper's tests") for row in one.rows):
+        key = (row.method, row.imu, row.scenario)
+        errors.setdefault(key, []).append(row.require().return_error_pct)
     rows = []
     for name, unit in product(filters(), ("", ", perfect IMU")):
-        row = [name + unit]
+        line = [name + unit]
         for test in IHDE_TABLE_2:
-            errors = [errors[name + unit] for job, errors in done if job.scenario == test]
-            low, middle, high = np.percentile(errors, [10, 50, 90])
-            row.append(f"{middle:.2f} ({low:.2f} to {high:.2f})")
-        rows.append(row)
+            imu = "perfect" if unit else load_scenario(test).imu
+            low, middle, high = np.percentile(errors[name, imu, test], [10, 50, 90])
+            line.append(f"{middle:.2f} ({low:.2f} to {high:.2f})")
+        rows.append(line)
     return [*rows, ["**the paper's IEZ**", *(range_text(row["iez"]) for row in IHDE_TABLE_2.values())]]
 
 

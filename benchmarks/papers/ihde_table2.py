@@ -27,7 +27,8 @@ import numpy as np
 from benchmarks._common import options, write_json
 from benchmarks._page import by_name, fill
 from benchmarks.papers._ihde_page import loop_table, setting_table, table_2, variant_table
-from benchmarks.papers._ihde_ways import Job, Params, Way, judge
+from benchmarks.papers._ihde_ways import Job, Way, judge
+from footfall.errors import InputError
 from footfall.hdr.hde import Hde2010Params, HdeParams
 from footfall.hdr.ihde import IhdeParams
 from footfall.hdr.ihde_plus import IhdePlusParams
@@ -35,26 +36,19 @@ from footfall.hdr.jimenez import FilterHdrParams, JimenezParams
 from footfall.hdr.step_heading import HeadingSource
 from footfall.scenarios.judge.papers import IHDE_TABLE_2
 from footfall.scenarios.scenario import Scenario, load_scenario
+from footfall.scenarios.studies.tune import grid, require_apart, smallest
 
 TESTS = tuple(IHDE_TABLE_2)
 GAITS: Mapping[str, float] = {"people": 1.0, "line": 0.3}  # variability
 SOURCES: tuple[HeadingSource, ...] = ("yaw", "course", "both")
 
-HDE_GRID = tuple(
-    HdeParams(heading=heading, sigma=radians(sigma)) for heading, sigma in product(SOURCES, (8, 12, 20, 40))
-)
-IHDE_GRID = tuple(
+HDE_GRID = grid(HdeParams(), {"heading": SOURCES, "sigma_deg": (8, 12, 20, 40)})
+IHDE_GRID = [
     IhdeParams(heading=heading, a=IhdeParams.k1 * radians(scatter), sigma=radians(sigma))
     for heading, scatter, sigma in product(SOURCES, (1.5, 1.75, 2, 2.5), (4, 8))
-)
-JIMENEZ_GRID = tuple(
-    JimenezParams(heading=heading, gate=radians(gate), sigma=radians(sigma))
-    for heading, gate, sigma in product(SOURCES, (2, 3, 4), (2, 4))
-)
-PLUS_GRID = tuple(
-    IhdePlusParams(heading=heading, scatter=radians(scatter))
-    for heading, scatter in product(SOURCES, (1.5, 2, 2.5))
-)
+]
+JIMENEZ_GRID = grid(JimenezParams(), {"heading": SOURCES, "gate_deg": (2, 3, 4), "sigma_deg": (2, 4)})
+PLUS_GRID = grid(IhdePlusParams(), {"heading": SOURCES, "scatter_deg": (1.5, 2, 2.5)})
 
 
 @dataclass(frozen=True)
@@ -71,94 +65,99 @@ class Tuned:
         alone = replace(self.ihde, fallback=False)
         learned = replace(alone, directions=replace(alone.directions, reference=None))
         return {
-            "pdr": Way(filter="none"),
-            "hde-2010": Way(Hde2010Params(), filter="none"),
-            "iez": Way(),
-            "hde": Way(self.hde),
-            "ihde": Way(self.ihde),
-            "ihde, no mean heading": Way(alone),
-            "ihde-learned": Way(learned),
-            "ihde-jimenez": Way(self.jimenez),
-            "hdr-filter": Way(FilterHdrParams()),
-            "ihde-plus": Way(self.plus),
-            "iez-paper": Way(filter="paper"),
-            "hde-paper": Way(self.hde, filter="paper"),
-            "ihde-paper": Way(self.ihde, filter="paper"),
+            "pdr": Way("pdr"),
+            "hde-2010": Way("hde-2010", Hde2010Params()),
+            "iez": Way("iez"),
+            "hde": Way("hde", self.hde),
+            "ihde": Way("ihde", self.ihde),
+            "ihde, no mean heading": Way("ihde", alone),
+            "ihde-learned": Way("ihde-learned", learned),
+            "ihde-jimenez": Way("ihde-jimenez", self.jimenez),
+            "hdr-filter": Way("hdr-filter", FilterHdrParams()),
+            "ihde-plus": Way("ihde-plus", self.plus),
+            "iez-paper": Way("iez-paper"),
+            "hde-paper": Way("hde-paper", self.hde),
+            "ihde-paper": Way("ihde-paper", self.ihde),
         }
 
     def variants(self) -> dict[str, Way]:
         """What is changed, one thing at a time."""
-        ihde, plus = self.ihde, self.plus
-        changed: dict[str, Way] = {
-            "iez, no bias": Way(bias=0.0),
-            "hde as it comes": Way(HdeParams()),
-            "ihde as it comes": Way(IhdeParams()),
-            "**ihde as tuned**": Way(ihde),
-            "the start: wrong by 5 deg": Way(ihde, start_off_deg=5.0),
-            "the start: wrong by 10 deg": Way(ihde, start_off_deg=10.0),
-            **{f"the foot's angle: {source}": Way(replace(ihde, heading=source)) for source in SOURCES},
-            "the window: W = 3": Way(replace(ihde, window=3)),
-            "the window: W = 8": Way(replace(ihde, window=8)),
-            "straight: a / k1 = 1 deg": Way(replace(ihde, a=ihde.k1 * radians(1))),
-            "straight: a / k1 = 3 deg": Way(replace(ihde, a=ihde.k1 * radians(3))),
-            "the same, no mean heading": Way(replace(ihde, a=ihde.k1 * radians(3), fallback=False)),
-            "a direction within 10 deg": Way(replace(ihde, match=radians(10))),
-            "a direction within 15 deg": Way(replace(ihde, match=radians(15))),
-            "no mean heading": Way(replace(ihde, fallback=False)),
-            "no bias": Way(ihde, bias=0.0),
-            "twice the bias": Way(ihde, bias=2.0),
-            "ihde-plus as it comes": Way(IhdePlusParams()),
-            "**ihde-plus as tuned**": Way(plus),
-            "ihde-plus, start wrong by 5 deg": Way(plus, start_off_deg=5.0),
-            "ihde-plus, start wrong by 10 deg": Way(plus, start_off_deg=10.0),
-            **{f"ihde-plus on {source}": Way(replace(plus, heading=source)) for source in SOURCES},
-            "ihde-plus, no bias": Way(plus, bias=0.0),
-            "ihde-plus, twice the bias": Way(plus, bias=2.0),
+        k1 = self.ihde.k1
+
+        def ihde(start_off_deg: float = 0.0, bias: float = 1.0, **changed: Any) -> Way:
+            return Way("ihde", replace(self.ihde, **changed), start_off_deg, bias)
+
+        def plus(start_off_deg: float = 0.0, bias: float = 1.0, **changed: Any) -> Way:
+            return Way("ihde-plus", replace(self.plus, **changed), start_off_deg, bias)
+
+        return {
+            "iez, no bias": Way("iez", bias=0.0),
+            "hde as it comes": Way("hde", HdeParams()),
+            "ihde as it comes": Way("ihde", IhdeParams()),
+            "**ihde as tuned**": ihde(),
+            "the start: wrong by 5 deg": ihde(start_off_deg=5.0),
+            "the start: wrong by 10 deg": ihde(start_off_deg=10.0),
+            **{f"the foot's angle: {source}": ihde(heading=source) for source in SOURCES},
+            "the window: W = 3": ihde(window=3),
+            "the window: W = 8": ihde(window=8),
+            "straight: a / k1 = 1 deg": ihde(a=k1 * radians(1)),
+            "straight: a / k1 = 3 deg": ihde(a=k1 * radians(3)),
+            "the same, no mean heading": ihde(a=k1 * radians(3), fallback=False),
+            "a direction within 10 deg": ihde(match=radians(10)),
+            "a direction within 15 deg": ihde(match=radians(15)),
+            "no mean heading": ihde(fallback=False),
+            "no bias": ihde(bias=0.0),
+            "twice the bias": ihde(bias=2.0),
+            "ihde-plus as it comes": Way("ihde-plus", IhdePlusParams()),
+            "**ihde-plus as tuned**": plus(),
+            "ihde-plus, start wrong by 5 deg": plus(start_off_deg=5.0),
+            "ihde-plus, start wrong by 10 deg": plus(start_off_deg=10.0),
+            **{f"ihde-plus on {source}": plus(heading=source) for source in SOURCES},
+            "ihde-plus, no bias": plus(bias=0.0),
+            "ihde-plus, twice the bias": plus(bias=2.0),
         }
-        return changed
 
     def loop(self) -> dict[str, Way]:
         """What walks the closed loop."""
         return {
-            "iez": Way(),
-            "hde": Way(self.hde),
-            "ihde": Way(self.ihde),
-            "ihde, no mean heading": Way(replace(self.ihde, fallback=False)),
-            "ihde-jimenez": Way(self.jimenez),
-            "ihde-plus": Way(self.plus),
+            "iez": Way("iez"),
+            "hde": Way("hde", self.hde),
+            "ihde": Way("ihde", self.ihde),
+            "ihde, no mean heading": Way("ihde", replace(self.ihde, fallback=False)),
+            "ihde-jimenez": Way("ihde-jimenez", self.jimenez),
+            "ihde-plus": Way("ihde-plus", self.plus),
         }
 
 
-def jobs(
-    scenarios: Mapping[str, Scenario], gaits: Sequence[float], seeds: Sequence[int], ways: Sequence[Way]
-) -> list[Job]:
-    """Every test with every gait and seed; each walk wears the unit of its seed."""
+def jobs(scenarios: Mapping[str, Scenario], seeds: Sequence[int], ways: Sequence[Way]) -> list[Job]:
+    """Every test with every gait; each walk wears the unit of its seed."""
+    units = {seed: (seed,) for seed in seeds}
     return [
-        Job(scenarios[test].changed("gait", variability=gait), seed, (seed,), tuple(ways))
-        for gait in gaits
+        Job(scenarios[test].changed("gait", variability=gait), units, ways)
+        for gait in GAITS.values()
         for test in TESTS
-        for seed in seeds
     ]
 
 
-def best(grid: Sequence[Any], errors: Sequence[np.ndarray]) -> int:
-    """Place in the grid of the smallest heading error, geometric mean over errors (walks, grid, 3)."""
-    mean = np.mean([np.log(found[:, :, 1].mean(axis=0)) for found in errors], axis=0)
-    return int(np.argmin(mean[: len(grid)]))
-
-
 def tune(scenarios: Mapping[str, Scenario], seeds: Sequence[int], processes: int) -> Tuned:
-    """Choose the parameters on these walks."""
-    grids: tuple[tuple[Params, ...], ...] = (HDE_GRID, IHDE_GRID, JIMENEZ_GRID, PLUS_GRID)
-    ways = [Way(params) for grid in grids for params in grid]
-    found = judge(jobs(scenarios, list(GAITS.values()), seeds, ways), processes, "tuning")
+    """Choose the parameters on these walks, by the mean heading error."""
+    grids: dict[str, Sequence[Any]] = {
+        "hde": HDE_GRID,
+        "ihde": IHDE_GRID,
+        "ihde-jimenez": JIMENEZ_GRID,
+        "ihde-plus": PLUS_GRID,
+    }
+    ways = [Way(use, params) for use, sets in grids.items() for params in sets]
+    found = judge(jobs(scenarios, seeds, ways), processes, "tuning")
     chosen: list[Any] = []
     first = 0
-    for grid in grids:
-        tests = TESTS[:2] if grid is HDE_GRID else TESTS
-        part = [rows[:, first : first + len(grid)] for (test, _), rows in found.items() if test in tests]
-        chosen.append(grid[best(grid, part)])
-        first += len(grid)
+    for use, sets in grids.items():
+        part = slice(first, first + len(sets))
+        tests = TESTS[:2] if use == "hde" else TESTS
+        chosen.append(
+            sets[smallest([rows[:, part, 1] for (test, _), rows in found.items() if test in tests])]
+        )
+        first = part.stop
     return Tuned(*chosen)
 
 
@@ -196,14 +195,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     chosen = parser.parse_args(arguments)
     seeds = range(chosen.walk_seed, chosen.walk_seed + chosen.walks)
     tuning = range(chosen.tuning_seed, chosen.tuning_seed + chosen.tuning_walks)
-    if set(seeds) & set(tuning):
-        raise SystemExit("tuning and judging share a walk seed: choose other seeds")
+    try:
+        require_apart("walk seed", tuning, seeds)
+    except InputError as error:
+        raise SystemExit(str(error)) from None
 
     scenarios = {test: load_scenario(test) for test in TESTS}
     tuned = tune(scenarios, tuning, chosen.processes)
     ways, variants, loop_ways = tuned.ways(), tuned.variants(), tuned.loop()
     judged = [*ways.values(), *variants.values()]
-    found = judge(jobs(scenarios, list(GAITS.values()), seeds, judged), chosen.processes, "judging")
+    found = judge(jobs(scenarios, seeds, judged), chosen.processes, "judging")
 
     def part(names: Sequence[str], gait: str, first: int = 0) -> dict[str, dict[str, np.ndarray]]:
         return {
@@ -219,9 +220,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if chosen.loop_walks:
         loop = load_scenario("closed-loop")
         units = tuple(range(loop.seeds.base + 500, loop.seeds.base + 500 + chosen.loop_units))
-        todo = [
-            Job(loop, loop.seeds.base + i, units, tuple(loop_ways.values())) for i in range(chosen.loop_walks)
-        ]
+        worn = {loop.seeds.base + i: units for i in range(chosen.loop_walks)}
+        todo = [Job(loop, worn, tuple(loop_ways.values()))]
         (looped,) = judge(todo, chosen.processes, "the closed loop").values()
         sheets.append(loop_table(list(loop_ways), looped))
 

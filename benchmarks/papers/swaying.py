@@ -11,26 +11,20 @@ python -m benchmarks.papers.swaying --page docs/swaying.md --figure docs/images/
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks._common import options, run_all, write_json
+from benchmarks._common import heading_errors_deg, options, outcomes, run_all, write_json
 from benchmarks._page import Sheet, by_name, fill
 from benchmarks.papers._swaying_figure import draw
-from footfall.hdr.hdr import HdrParams, HdrTrace, headings, trace
-from footfall.hdr.methods import Reckoning, pdr_track
-from footfall.models.imu import draw_unit, load_spec
+from footfall.hdr.hdr import HdrParams, HdrTrace, trace
+from footfall.hdr.tracks import pdr_track
 from footfall.pdr.footfalls import Footfalls
 from footfall.scenarios.judge.score import compare
-from footfall.scenarios.path import PathSpec, build_path
 from footfall.scenarios.scenario import Scenario, load_scenario
-from footfall.scenarios.trial import start_pose
-from footfall.simulate.cache import cached_walk
-from footfall.simulate.plan import Plan
-from footfall.simulate.record import record
+from footfall.scenarios.trial import Trial, reckoning, recording_of, setup, walk_of
 
 SWAYS = ("sway at the footfall rate", "people's wander", "wide, slow sway")
 LEAD = {"kind": "straight", "length_m": 80.0}
@@ -45,7 +39,7 @@ OTHERS = {
 }
 PERIODS = (2.2, 5.0, 10.0, 20.0, 40.0, 80.0)  # s, of a sway
 INTERVAL = 1.1  # s, of a stride
-METHODS = {"uncorrected": None, "basic HDR": HdrParams.basic(), "HDR": HdrParams()}
+METHODS = {"uncorrected": "pdr", "basic HDR": "hdr-basic", "HDR": "hdr"}
 FINAL, AVERAGE = 0, 1
 
 
@@ -73,44 +67,47 @@ def delagged(rate: np.ndarray, interval: np.ndarray, tau: float) -> np.ndarray:
     return rate
 
 
-def plans(scenario: Scenario) -> dict[str, Plan]:
-    """The walks of `swaying`, and its first on other paths."""
-    found = {name: scenario.plan(number) for number, name in enumerate(SWAYS)}
-    for name, elements in OTHERS.items():
-        route = build_path(PathSpec.model_validate({"elements": elements})).route
-        found[name] = replace(scenario.plan(0), name=name, route=route)
-    return found
+def perfect_trials(scenario: Scenario) -> dict[str, Trial]:
+    """The walks of `swaying`, and its first on other paths, in an IMU without error."""
+
+    def trial(walked: Scenario, number: int) -> Trial:
+        worn = setup(walked, imu="perfect", methods=())
+        return Trial(worn, number, scenario.seeds.base + number, unit_seed=0, noise_seed=0)
+
+    found = {name: trial(scenario, number) for number, name in enumerate(SWAYS)}
+    return found | {
+        name: trial(scenario.changed("path", elements=elements), 0) for name, elements in OTHERS.items()
+    }
 
 
-def motion(item: tuple[str, Plan]) -> Motion:
+def motion(item: tuple[str, Trial]) -> Motion:
     """Walk, dead-reckon with an IMU without error, and correct what needs no correction."""
-    name, plan = item
-    walk = cached_walk(plan)
-    recording = record(walk, draw_unit(load_spec("perfect"), 0), seed=0)
-    footfalls = Reckoning(recording, start_pose(walk)).footfalls
+    name, trial = item
+    walk = walk_of(trial)
+    footfalls = reckoning(trial.setup, walk, recording_of(trial, walk)).footfalls
     error = compare(pdr_track(footfalls), walk).heading_error
     t = walk.t - walk.t[0]
     places = np.column_stack([np.interp(footfalls.t, t, column) for column in walk.position.T])
     return Motion(name, footfalls, trace(footfalls), footfalls.heading - error, places)
 
 
-def scored(units: Sequence[int], noises: Sequence[int], job: tuple[Scenario, int, int]) -> np.ndarray:
-    """(unit, noise, method, 2) final and average heading error (deg) on one walk: scenario, number, seed."""
-    scenario, number, seed = job
-    walk = cached_walk(replace(scenario.plan(number), seed=seed))
-    spec, start = load_spec(scenario.imu), start_pose(walk)
-    errors = np.empty((len(units), len(noises), len(METHODS), 2))
-    for u, unit in enumerate(units):
-        for k, noise in enumerate(noises):
-            drawn = draw_unit(spec, unit)
-            recording = record(walk, drawn, seed=noise, temperature=scenario.temperature_of(number))
-            footfalls = Reckoning(recording, start).footfalls
-            error = compare(pdr_track(footfalls), walk).heading_error
-            sets = [params for params in METHODS.values() if params is not None]
-            corrected = headings([footfalls], sets)[0] - footfalls.heading
-            size = np.degrees(np.abs(np.vstack([error, error + corrected])))
-            errors[u, k, :, FINAL], errors[u, k, :, AVERAGE] = size[:, -1], size.mean(axis=1)
-    return errors
+def scored(
+    scenario: Scenario, walks: int, units: Sequence[int], noises: Sequence[int], processes: int
+) -> np.ndarray:
+    """(sway, walk, unit, noise, method, 2) final and average heading error (deg)."""
+    worn = setup(scenario, methods=METHODS.values())
+    trials = [
+        Trial(worn, number, scenario.seeds.base + number + len(SWAYS) * k, unit, noise)
+        for number in range(len(SWAYS))
+        for k in range(walks)
+        for unit in units
+        for noise in noises
+    ]
+    found = outcomes(trials, processes, "units")
+    if len(found) < len(trials):
+        raise SystemExit("a walk came to no end")
+    errors = np.array([[heading_errors_deg(row) for row in one.rows] for one in found])
+    return errors.reshape(len(SWAYS), walks, len(units), len(noises), len(METHODS), 2)
 
 
 def stage_sheet(motions: Sequence[Motion]) -> Sheet:
@@ -180,21 +177,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     chosen = parser.parse_args(arguments)
 
     scenario = load_scenario("swaying")
-    motions = run_all(motion, list(plans(scenario).items()), chosen.processes, "motions")
+    motions = run_all(motion, list(perfect_trials(scenario).items()), chosen.processes, "motions")
     tau = HdrParams().tau_s
     undone = max(
         np.abs(delagged(one.found.twice, one.footfalls.interval, tau) - one.footfalls.rate).max()
         for one in motions
     )
-    jobs = [
-        (scenario, number, scenario.seeds.base + number + len(SWAYS) * k)
-        for number in range(len(SWAYS))
-        for k in range(chosen.walks)
-    ]
     units = range(chosen.unit_seed, chosen.unit_seed + chosen.units)
-    work = partial(scored, units, range(chosen.noises))
-    errors = np.array(run_all(work, jobs, chosen.processes, "units"))
-    errors = errors.reshape(len(SWAYS), chosen.walks, *errors.shape[1:])
+    errors = scored(scenario, chosen.walks, units, range(chosen.noises), chosen.processes)
 
     sheets = [stage_sheet(motions), gain_sheet(), error_sheet(errors)]
     for sheet in sheets:

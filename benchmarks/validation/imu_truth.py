@@ -11,17 +11,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 
 import numpy as np
 from rich.table import Table
 from scipy.spatial.transform import Rotation
 
 from benchmarks._common import options, out, run_all, shortened, write_json
-from footfall.models.imu import draw_unit, load_spec
 from footfall.pdr.strapdown import integrate
 from footfall.scenarios.scenario import load_scenario
+from footfall.scenarios.trial import Trial, recording_of, setup
 from footfall.simulate.plan import Plan
-from footfall.simulate.record import record
 from footfall.simulate.walking import walk
 
 TARGET_MM = {1000.0: 1.0, 200.0: 2.0}
@@ -39,10 +39,10 @@ class Error:
     attitude_deg: float
 
 
-def measure(plan: Plan) -> Error:
+def measure(plan: Plan, trial: Trial) -> Error:
     """Walk, record and integrate."""
     truth = walk(plan)
-    recording = record(truth, draw_unit(load_spec("perfect"), 0), seed=0)
+    recording = recording_of(trial, truth)
     found = integrate(
         recording.t,
         recording.gyro,
@@ -69,10 +69,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--metres", type=float, help="walk only the first of it")
     chosen = parser.parse_args(arguments)
 
-    plan = load_scenario(chosen.scenario).plan(0)
-    plan = replace(plan, route=shortened(plan.route, chosen.metres))
+    worn = setup(load_scenario(chosen.scenario), imu="perfect", methods=())
+    trial = Trial(worn, 0, worn.scenario.seeds.base, unit_seed=0, noise_seed=0)
+    plan = replace(trial.plan, route=shortened(trial.plan.route, chosen.metres))
     plans = [replace(plan, rate_hz=rate) for rate in TARGET_MM]
-    errors = run_all(measure, plans, chosen.processes, "walking")
+    errors = run_all(partial(measure, trial=trial), plans, chosen.processes, "walking")
 
     table = Table(
         title=f"A perfect IMU integrated open loop, {plan.name}, seed {plan.seed}", title_justify="left"

@@ -15,14 +15,10 @@ import numpy as np
 from rich.table import Table
 
 from benchmarks._common import options, out, run_all, write_json
-from footfall.hdr.methods import tracks
-from footfall.models.imu import draw_unit, load_spec
 from footfall.pdr.track import Track
 from footfall.scenarios.judge.score import compare, score
 from footfall.scenarios.scenario import load_scenario, stock_scenarios
-from footfall.scenarios.trial import reckoning, setup
-from footfall.simulate.cache import cached_walk
-from footfall.simulate.record import record
+from footfall.scenarios.trial import Trial, perform, setup, walk_of
 from footfall.simulate.walk import Walk
 
 METHODS = ("pdr", "iez")
@@ -51,14 +47,13 @@ def own(scenario: str, walk: int, method: str, track: Track, truth: Walk) -> Own
     return Own(scenario, walk, method, float(heading[0]), float(heading.max()), distance, 100 * off / walked)
 
 
-def measure(job: tuple[str, int]) -> list[Own]:
+def measure(trial: Trial) -> list[Own]:
     """Walk once, record without an error, navigate."""
-    name, number = job
-    scenario = load_scenario(name)
-    truth = cached_walk(scenario.plan(number))
-    recording = record(truth, draw_unit(load_spec("perfect"), 1), seed=1)
-    found = tracks(reckoning(setup(scenario), truth, recording), METHODS)
-    return [own(name, number + 1, method, track, truth) for method, track in found.items()]
+    walk = walk_of(trial)
+    kept = perform(trial, walk, keep=True).kept
+    assert kept is not None
+    name = trial.setup.scenario.name
+    return [own(name, trial.number + 1, method, track, walk) for method, track in kept.tracks.items()]
 
 
 def report(found: Sequence[Own]) -> None:
@@ -86,7 +81,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("scenarios", nargs="*", default=list(stock_scenarios()), help="default: all")
     parser.add_argument("--walks", type=int, default=2, help="of each scenario (default 2)")
     chosen = parser.parse_args(arguments)
-    jobs = [(name, number) for name in chosen.scenarios for number in range(chosen.walks)]
+    setups = [setup(load_scenario(name), imu="perfect", methods=METHODS) for name in chosen.scenarios]
+    jobs = [
+        Trial(one, number, one.scenario.seeds.base + number, unit_seed=1, noise_seed=1)
+        for one in setups
+        for number in range(chosen.walks)
+    ]
     found = [one for rows in run_all(measure, jobs, chosen.processes, "perfect IMU") for one in rows]
     report(found)
     write_json(chosen.json, {"perfect": [asdict(one) for one in found]})

@@ -18,9 +18,18 @@ from dataclasses import dataclass
 import numpy as np
 from rich.table import Table
 
-from benchmarks._common import dead_reckoned, options, out, shared_out, within_paper, write_json
+from benchmarks._common import (
+    dealt,
+    heading_errors_deg,
+    options,
+    out,
+    outcomes,
+    within_paper,
+    write_json,
+)
 from footfall.scenarios.judge.papers import HDR_TABLE_2_MEAN, UNCORRECTED_FINAL_RANGE
 from footfall.scenarios.scenario import Scenario, load_scenario
+from footfall.scenarios.trial import setup
 
 
 @dataclass(frozen=True)
@@ -53,14 +62,13 @@ def keep(drawn: Sequence[Drawn]) -> list[Drawn]:
 
 def draw(scenario: Scenario, least: int, most: int, processes: int) -> list[Drawn]:
     """Draw at least `least` units, and more until every walk has one, `most` at most."""
-    walks, base = scenario.seeds.walks, scenario.seeds.base
+    walks, worn = scenario.seeds.walks, setup(scenario, methods=["pdr"])
     drawn: list[Drawn] = []
     for first in range(0, most, least):
         seeds = range(first, min(first + least, most))
-        cases = dead_reckoned(
-            shared_out(scenario, walks, base, seeds), processes, f"units {seeds[0]} to {seeds[-1]}"
-        )
-        drawn += [judge(case.unit, case.walk - base, case.uncorrected_deg(), walks) for case in cases]
+        trials = dealt(worn, walks, scenario.seeds.base, seeds)
+        rows = (one.rows[0] for one in outcomes(trials, processes, f"units {seeds[0]} to {seeds[-1]}"))
+        drawn += [judge(row.unit_seed, row.number, np.array(heading_errors_deg(row)), walks) for row in rows]
         if len(keep(drawn)) == walks:
             break
     return drawn

@@ -13,23 +13,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks import _common
-from benchmarks.papers import _hdr_page, hdr_table2
+from benchmarks.papers import _hdr_cases, _hdr_page, hdr_table2
 from benchmarks.speed import walker as walker_speed
 from benchmarks.validation import imu_truth, perfect_imu, robustness, scatter, starts, stock_units, stops
-from footfall.hdr import methods
+from footfall.errors import InputError
 from footfall.hdr.hdr import HdrParams, headings
-from footfall.hdr.methods import Reckoning, hdr_track, pdr_track
-from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
-from footfall.scenarios.judge.score import compare, score
+from footfall.hdr.method import Method
+from footfall.hdr.methods import METHODS
+from footfall.scenarios.judge.score import compare
 from footfall.scenarios.scenario import load_scenario
-from footfall.scenarios.trial import start_pose
-from footfall.simulate.cache import cached_walk
-from footfall.simulate.episode import FallError
-from footfall.simulate.record import record
+from footfall.scenarios.trial import Trial, perform, setup, walk_of
 from footfall.simulate.walk import TrueFootfalls
+from footfall.simulate.walking import FallError
 from tests.helpers.places import ROOT
-
-COLD = TemperatureProfile.step(20.0, -5.0)
 
 SCENARIO = """
 description = "a corner and a slope"
@@ -93,19 +89,17 @@ def test_walker_speed_accounts_for_every_second(short: str, tmp_path: Path) -> N
         assert row["share in MuJoCo"] == pytest.approx(row["MuJoCo"] / row["whole"])
 
 
-def test_errors_of_a_batch_are_the_scores_of_its_tracks(short_walk) -> None:
-    recording = record(short_walk, draw_unit(load_spec("nimu"), 3), seed=3)
-    footfalls = Reckoning(recording, start_pose(short_walk)).footfalls
-    case = _common.Case(1, 3, 0, footfalls, compare(pdr_track(footfalls), short_walk).heading_error)
+def test_errors_of_a_batch_are_the_scores_of_its_tracks(short_walk, monkeypatch) -> None:
+    monkeypatch.setattr("footfall.scenarios.trial.cached_walk", lambda plan, **keys: short_walk)
     sets = [HdrParams(), HdrParams.from_degrees(i_c_deg_s=0.02, theta_w_deg_s=1.0)]
-
-    def judged(track) -> list[float]:
-        found = score(track, short_walk)
-        return [found.heading_error_final_deg, found.heading_error_mean_deg]
-
-    np.testing.assert_allclose(case.uncorrected_deg(), judged(pdr_track(footfalls)), atol=1e-9)
-    expected = [judged(hdr_track(footfalls, params)) for params in sets]
-    np.testing.assert_allclose(case.corrected_deg(headings([footfalls], sets)[0]), expected, atol=1e-9)
+    wide = METHODS["hdr"].renamed("wide").with_params({"i_c_deg_s": 0.02, "theta_w_deg_s": 1.0})
+    trial = Trial(setup(load_scenario("straight"), methods=["pdr", "hdr", wide]), 0, 1, 3, 3)
+    (case,) = _hdr_cases.dead_reckoned([trial], 1, "")
+    scores = perform(trial, short_walk).scores
+    pdr, *expected = [(one.heading_error_final_deg, one.heading_error_mean_deg) for one in scores.values()]
+    np.testing.assert_allclose(case.uncorrected_deg(), pdr, atol=1e-9)
+    np.testing.assert_allclose(case.corrected_deg(headings([case.footfalls], sets)[0]), expected, atol=1e-9)
+    np.testing.assert_allclose(hdr_table2.average_deg(case, sets), np.array(expected)[:, 1], atol=1e-9)
 
 
 def test_hdr_is_tuned_and_judged_on_different_walks_and_units(short: str, tmp_path: Path) -> None:
@@ -156,16 +150,46 @@ def test_errors_are_summed_up_over_units_and_noises() -> None:
 
 
 def test_each_unit_is_heard_through_its_own_noise_and_more(short: str) -> None:
-    scenario = load_scenario(short)
-    todo = _common.shared_out(scenario, 2, scenario.seeds.base, (7, 8), 2)
-    cases = _common.dead_reckoned(todo, 1, "walking")
-    assert [(case.unit, case.noise) for case in cases] == [(7, 0), (7, 1), (7, 2), (8, 0), (8, 1), (8, 2)]
-    walk = cached_walk(replace(scenario.plan(1), seed=scenario.seeds.base + 1))
-    for case in cases[:2]:
-        seed = 7 + _common.NOISE_STEP * case.noise
-        recording = record(walk, draw_unit(load_spec("nimu"), 7), seed=seed, temperature=COLD)
-        expected = score(methods.track(recording, "pdr", start_pose(walk)), walk)
-        assert case.uncorrected_deg()[0] == pytest.approx(expected.heading_error_final_deg)
+    worn = setup(load_scenario(short), methods=["pdr"])
+    trials = _common.dealt(worn, 2, 1, (7, 8), 2)
+    far = _common.NOISE_STEP
+    assert [(one.unit_seed, one.noise_seed) for one in trials] == [
+        *((7, 7 + far * noise) for noise in range(3)),
+        *((8, 8 + far * noise) for noise in range(3)),
+    ]
+    assert {(one.unit_seed, one.number, one.walk_seed) for one in trials} == {(7, 1, 2), (8, 0, 1)}
+    cases = _hdr_cases.dead_reckoned(trials, 1, "walking")
+    assert [case.trial for case in cases] == trials
+    found = _common.outcomes(trials, 1, "trials")
+    errors = [_common.heading_errors_deg(one.rows[0]) for one in found]
+    assert len(set(errors)) == len(errors)
+    np.testing.assert_allclose([case.uncorrected_deg() for case in cases], errors, atol=1e-9)
+
+
+def test_a_walk_without_an_end_is_named_and_left_out(
+    short: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], short_walk
+) -> None:
+    def falls(plan, **keys):
+        if plan.seed == 2:
+            raise FallError("short: the walker fell at 17 m")
+        return short_walk
+
+    monkeypatch.setattr("footfall.scenarios.trial.cached_walk", falls)
+    trials = _common.dealt(setup(load_scenario(short), methods=["pdr"]), 2, 1, (7, 8, 9))
+    assert [one.trial.unit_seed for one in _common.outcomes(trials, 1, "")] == [8]
+    assert "left out, 2 recordings: short: the walker fell at 17 m" in capsys.readouterr().err
+    assert [case.trial.unit_seed for case in _hdr_cases.dead_reckoned(trials, 1, "")] == [8]
+    assert "left out, 2 recordings" in capsys.readouterr().err
+
+
+def test_what_a_method_refuses_is_no_figure(short: str, monkeypatch: pytest.MonkeyPatch, short_walk) -> None:
+    def refuses(reckoning, params):
+        raise InputError("no")
+
+    monkeypatch.setattr("footfall.scenarios.trial.cached_walk", lambda plan, **keys: short_walk)
+    worn = setup(load_scenario(short), methods=[Method("bad", "", refuses)])
+    with pytest.raises(InputError, match="no"):
+        _common.outcomes(_common.dealt(worn, 1, 1, (7,)), 1, "")
 
 
 @pytest.mark.parametrize("clash", [["--tuning-unit-seed", "1003"], ["--tuning-walk-seed", "2"]])
@@ -365,10 +389,10 @@ def test_scatter_is_that_of_the_strides_in_the_middle(capsys: pytest.CaptureFixt
 
 def test_a_perfect_imu_leaves_what_is_the_methods_own(short: str, tmp_path: Path) -> None:
     """On a short walk next to nothing, and a track that is turned by 5 deg is told as it is."""
-    scenario = load_scenario(short)
-    walk = cached_walk(scenario.plan(0))
-    recording = record(walk, draw_unit(load_spec("perfect"), 1), seed=1)
-    track = methods.track(recording, "pdr", start_pose(walk))
+    trial = Trial(setup(load_scenario(short), imu="perfect", methods=["pdr"]), 0, 1, 1, 1)
+    walk = walk_of(trial)
+    assert [one.method for one in perfect_imu.measure(trial)] == ["pdr"]
+    track = perform(trial, walk, keep=True).kept.tracks["pdr"]
     own = perfect_imu.own("short", 1, "pdr", track, walk)
     assert own.first_heading_deg < 0.01
     assert abs(own.distance_error_pct) < 0.5

@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 
 from benchmarks.papers import _ihde_page, _ihde_ways, ihde_table2
-from footfall.hdr.methods import tracks
-from footfall.models.imu import draw_unit, load_spec
-from footfall.scenarios.judge.score import score
 from footfall.scenarios.scenario import build_scenario, load_scenario, read_document
-from footfall.scenarios.trial import reckoning, setup
-from footfall.simulate.cache import cached_walk
-from footfall.simulate.record import record
+from footfall.scenarios.trial import Trial, perform, setup
+
+TUNED = ihde_table2.Tuned(
+    ihde_table2.HdeParams(),
+    ihde_table2.IhdeParams(),
+    ihde_table2.JimenezParams(),
+    ihde_table2.IhdePlusParams(),
+)
 
 
 @pytest.mark.parametrize(
@@ -21,40 +23,29 @@ from footfall.simulate.record import record
 )
 def test_its_ways_are_the_methods_of_those_names(short_walk, name):
     """With default parameters a way is what `footfall run` scores."""
-    bench = ihde_table2
     scenario = load_scenario("ihde-test1").changed("sensor", imu="nimu", bias_time_s=20.0)
-    tuned = bench.Tuned(bench.HdeParams(), bench.IhdeParams(), bench.JimenezParams(), bench.IhdePlusParams())
-    recording = record(
-        short_walk, draw_unit(load_spec("nimu"), 3), seed=3, bias_shift=scenario.unit_bias_shift(3)
-    )
-    given = reckoning(setup(scenario), short_walk, recording)
-    expected = score(tracks(given, [name])[name], short_walk)
-    assert score(tuned.ways()[name].track(given), short_walk) == expected
+    methods = [name, TUNED.ways()[name].method("way")]
+    own, way = perform(Trial(setup(scenario, methods=methods), 0, 1, 3, 3), short_walk).rows
+    assert way.require() == own.require()
 
 
 def test_a_job_wears_each_unit_with_its_bias_and_its_start(short_walk, monkeypatch):
     """A start that is wrong by 5 deg turns the heading by 5; without a bias the filter is right."""
-    monkeypatch.setattr(_ihde_ways, "cached_walk", lambda plan: short_walk)
-    scenario = load_scenario("ihde-test1").changed(
-        "sensor", imu="perfect", bias_time_s=20.0, bias_shift_deg_s=0.2
-    )
+    monkeypatch.setattr("footfall.scenarios.trial.cached_walk", lambda plan, **keys: short_walk)
+    scenario = load_scenario("ihde-test1")
+    scenario = scenario.changed("sensor", imu="perfect", bias_time_s=20.0, bias_shift_deg_s=0.2)
     way = _ihde_ways.Way
-    ways = (way(), way(bias=0.0), way(bias=0.0, start_off_deg=5.0), way(bias=2.0))
-    found = _ihde_ways.navigate(_ihde_ways.Job(scenario, 1, (1, 2, 3), ways))
+    ways = (way("iez"), way("iez", bias=0.0), way("iez", bias=0.0, start_off_deg=5.0), way("iez", bias=2.0))
+    job = _ihde_ways.Job(scenario, {1: (1, 2, 3)}, ways)
+    (found,) = _ihde_ways.judge([job], 1, "").values()
     assert found.shape == (3, 4, 3)
     final = found[:, :, 2]
     assert (final[:, 1] < 0.5).all()
     assert final[:, 2] == pytest.approx(5.0, abs=0.5)
     assert final[:, 3] == pytest.approx(2 * final[:, 0], rel=0.2)
     assert final[:, 0] == pytest.approx(0.2 * (short_walk.t[-1] - 26), rel=0.4)
-
-
-def test_the_best_set_is_the_best_over_the_tests():
-    a, b, c = (np.random.default_rng(seed).uniform(1, 2, (4, 5, 3)) for seed in range(3))
-    a[:, 3, 1] = b[:, 3, 1] = 0.5
-    c[:, 3, 1] = 99.0
-    assert ihde_table2.best(range(5), [a, b]) == 3
-    assert ihde_table2.best(range(5), [a, b, c]) != 3
+    guided = {one.setup.guided for one in job.trials()}
+    assert guided == {setup(scenario).guided}  # filters do not know who has no bias
 
 
 def test_each_method_is_tuned_in_its_own_part_of_the_grid(monkeypatch):
@@ -63,7 +54,7 @@ def test_each_method_is_tuned_in_its_own_part_of_the_grid(monkeypatch):
     grids = (bench.HDE_GRID, bench.IHDE_GRID, bench.JIMENEZ_GRID, bench.PLUS_GRID)
 
     def judged(jobs, processes, label):
-        assert {job.seed for job in jobs} == {101, 102}
+        assert all(job.units == {101: (101,), 102: (102,)} for job in jobs)
         assert {job.scenario.gait.variability for job in jobs} == {1.0, 0.3}
         ways = [way.params for way in jobs[0].ways]
         errors = np.full((2, len(ways), 3), 5.0)
@@ -105,13 +96,6 @@ def test_it_runs_from_walks_to_page(workshop, tmp_path, monkeypatch):
     short = read_document(workshop / "short.toml")
     monkeypatch.setattr(bench, "GAITS", {"people": 1.0, "line": 1.0})
     monkeypatch.setattr(bench, "load_scenario", lambda test: build_scenario(replace(short, name=test)))
-    for module in (
-        "benchmarks.papers._ihde_ways",
-        "footfall.scenarios.run",
-    ):
-        monkeypatch.setattr(
-            f"{module}.cached_walk", lambda plan, **keys: cached_walk(replace(plan, name="short"), **keys)
-        )
     for grid in ("HDE_GRID", "JIMENEZ_GRID", "IHDE_GRID", "PLUS_GRID"):
         monkeypatch.setattr(bench, grid, getattr(bench, grid)[-1:])
     names = ("people", "line", "settings", "decides", "loop")

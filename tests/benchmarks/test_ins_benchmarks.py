@@ -10,6 +10,7 @@ from benchmarks.speed import filter as filter_speed
 from footfall.hdr.methods import Reckoning
 from footfall.pdr.detectors import DETECTORS
 from footfall.pdr.reckoning import PdrParams
+from footfall.scenarios.trial import perform
 from tests.helpers.synthetic_foot import walk
 
 
@@ -86,10 +87,23 @@ def test_the_false_bias_page_is_filled_and_drawn(feet, monkeypatch, tmp_path):
 
 def test_the_papers_tests_are_judged_with_their_imu_and_a_perfect_one(short_walk, monkeypatch):
     script = iez_false_bias
-    monkeypatch.setattr(script, "cached_walk", lambda plan: short_walk)
-    errors = script.walk_test(script.Job("ihde-test1", 0))
-    assert set(errors) == {name + unit for name in script.filters() for unit in ("", ", perfect IMU")}
-    assert errors["default, perfect IMU"] < 1.0
+    monkeypatch.setattr("footfall.scenarios.trial.cached_walk", lambda plan, **keys: short_walk)
+    trials = script.paper_trials("ihde-test2", 2)
+    assert [(one.number, one.walk_seed, one.setup.imu) for one in trials] == [
+        (0, 1, "mtig710"),
+        (0, 1, "perfect"),
+        (1, 2, "mtig710"),
+        (1, 2, "perfect"),
+    ]
+    assert {one.setup.scenario.sensor.bias_shift_deg_s for one in trials} == {0.0}
+    rows = {row.method: row for row in perform(trials[1], short_walk).rows}
+    assert set(rows) == set(script.filters())
+    assert rows["default"].require().return_error_pct < 1.0
+    table = script.paper_tests(1, 1)
+    assert len(table) == 2 * len(rows) + 1
+    at = list(rows).index("default") * 2 + 1
+    assert table[at][0] == "default, perfect IMU"
+    assert table[at][2].startswith(f"{rows['default'].require().return_error_pct:.2f} (")
 
 
 def test_filter_speed_tells_every_case(tmp_path, monkeypatch):

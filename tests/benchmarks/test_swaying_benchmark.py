@@ -1,5 +1,7 @@
 """What docs/swaying.md says of HDR's stages is what they do."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -30,7 +32,8 @@ def test_delagging_on_the_page_undoes_the_filter():
 
 
 def test_the_motions_are_the_scenarios_walks_and_three_others():
-    plans = swaying.plans(swaying.load_scenario("swaying"))
+    trials = swaying.perfect_trials(swaying.load_scenario("swaying"))
+    plans = {name: trial.plan for name, trial in trials.items()}
     assert [plan.gait.wander_m for plan in plans.values()] == [0.0, 0.1, 0.3, 0.0, 0.0, 0.0]
     turned = {name: np.degrees(plan.route.heading[-1]) for name, plan in plans.items()}
     assert turned["turning"] == pytest.approx(90)
@@ -38,6 +41,26 @@ def test_the_motions_are_the_scenarios_walks_and_three_others():
     assert turned["curving, radius 400 m"] == pytest.approx(28.65, abs=0.01)
     # One of the arcs is taken for drift at the walkers' pace, the other is not.
     assert 60 < HdrParams().erased_radius(1.3) < 400
+
+
+def test_errors_are_of_every_sway_walk_unit_and_noise(monkeypatch):
+    """In the order of the table: sways that err by their trial's seeds."""
+    scenario = swaying.load_scenario("swaying")
+
+    def done(trials, processes, label):
+        errors = [(one.walk_seed - scenario.seeds.base, one.unit_seed, one.noise_seed) for one in trials]
+        return [SimpleNamespace(rows=[(m, *error) for m in range(3)]) for error in errors]
+
+    monkeypatch.setattr(swaying, "outcomes", done)
+    monkeypatch.setattr(
+        swaying, "heading_errors_deg", lambda row: (row[1] + 10 * row[0], row[2] + row[3] / 10)
+    )
+    found = swaying.scored(scenario, 2, range(7, 9), range(3), 1)
+    assert found.shape == (3, 2, 2, 3, 3, 2)
+    sway, walk, unit, noise, method, _ = np.indices(found.shape)
+    final = swaying.FINAL
+    np.testing.assert_array_equal(found[..., final], (sway + 3 * walk + 10 * method)[..., final])
+    np.testing.assert_allclose(found[..., 1 - final], (7 + unit + noise / 10)[..., final])
 
 
 def stand_in(rate):
