@@ -14,11 +14,11 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from footfall.errors import InputError
 from footfall.models.policy import stock_policy
-from footfall.scenarios.trial import Outcome, Trial, failed, perform, walk_of
+from footfall.scenarios.trial import Kept, Outcome, Row, Trial, failed, perform, walk_of
 from footfall.scenarios.warm import warm
 from footfall.simulate.cache import is_cached, plan_key
 from footfall.simulate.walk import Walk
@@ -55,6 +55,13 @@ class _Group:
     index: list[int] = field(default_factory=list)
 
 
+class _Places(NamedTuple):
+    """Folders of walks (None: the user's cache) and of footfalls (None: none are kept)."""
+
+    walks: Path | None
+    footfalls: Path | None
+
+
 def cores() -> int:
     """Cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -66,6 +73,7 @@ def execute(
     workers: int | None = None,
     use_cache: bool = True,
     keep: Collection[int] = (),
+    store: Path | None = None,
     on_progress: Callable[[Progress], None] | None = None,
 ) -> Generator[Outcome, None, None]:
     """Perform every trial and yield the outcomes in order.
@@ -78,6 +86,7 @@ def execute(
     workers : processes; one a core when None; 1 works in this process
     use_cache : whether walks are taken from the user's cache and kept there
     keep : indices of the trials whose walk, recording, budget and tracks are wanted
+    store : folder of footfalls, for methods that need no samples (`footfall.scenarios.store`)
     on_progress : called about five times a second
     """
     groups: dict[str, _Group] = {}
@@ -102,7 +111,7 @@ def execute(
             report(progress)
             warm(trials[0], walks=not all(is_cached(key, folder) for key in groups))
             progress.compiling = False
-        yield from _in_order(run(work, folder, frozenset(keep), progress, report))
+        yield from _in_order(run(work, _Places(folder, store), frozenset(keep), progress, report))
 
 
 def _in_order(found: Iterator[tuple[int, Outcome]]) -> Iterator[Outcome]:
@@ -118,7 +127,7 @@ def _in_order(found: Iterator[tuple[int, Outcome]]) -> Iterator[Outcome]:
 
 def _here(
     work: Sequence[_Group],
-    folder: Path | None,
+    places: _Places,
     keep: frozenset[int],
     progress: Progress,
     report: Callable[[Progress], None],
@@ -130,10 +139,10 @@ def _here(
             progress.metres[at] = metres
             report(progress)
 
-        walk = _walk(group.trials[0], folder, walked)
+        walk = _walk(group.trials[0], places.walks, walked)
         walked(group.trials[0].plan.route.length)
         for index, trial in zip(group.index, group.trials, strict=True):
-            outcome = _one(trial, walk, index in keep)
+            outcome = _one(trial, walk, index in keep, places.footfalls)
             progress.done += 1
             report(progress)
             yield index, outcome
@@ -141,7 +150,7 @@ def _here(
 
 def _spread(
     work: Sequence[_Group],
-    folder: Path | None,
+    places: _Places,
     keep: frozenset[int],
     progress: Progress,
     report: Callable[[Progress], None],
@@ -149,9 +158,10 @@ def _spread(
     workers: int,
 ) -> Iterator[tuple[int, Outcome]]:
     """Over processes: each walk is a job of its own; what needs it follows in chunks."""
+    own = {index: trial for group in work for index, trial in zip(group.index, group.trials, strict=True)}
     with worker_pool(workers, len(work)) as (pool, metres):
         walking: dict[Future[Any], int] = {
-            pool.submit(_walk_job, at, group.trials[0], folder): at for at, group in enumerate(work)
+            pool.submit(_walk_job, at, group.trials[0], places.walks): at for at, group in enumerate(work)
         }
         trying: set[Future[Any]] = set()
         while walking or trying:
@@ -167,10 +177,12 @@ def _spread(
                         continue
                     for part in _chunks(work[at]):
                         kept = [index in keep for index in part.index]
-                        trying.add(pool.submit(_chunk_job, part, kept, folder))
+                        trying.add(pool.submit(_chunk_job, part, kept, places))
                 else:
                     trying.remove(future)
-                    ready += future.result()
+                    ready += [
+                        (index, Outcome(own[index], rows, kept)) for index, rows, kept in future.result()
+                    ]
             progress.metres[:] = metres
             progress.done += len(ready)
             report(progress)
@@ -190,8 +202,10 @@ def _walk(trial: Trial, folder: Path | None, report: Callable[[float], None] | N
         return error
 
 
-def _one(trial: Trial, walk: Walk | InputError, keep: bool) -> Outcome:
-    return failed(trial, walk) if isinstance(walk, InputError) else perform(trial, walk, keep=keep)
+def _one(trial: Trial, walk: Walk | InputError, keep: bool, store: Path | None) -> Outcome:
+    if isinstance(walk, InputError):
+        return failed(trial, walk)
+    return perform(trial, walk, keep=keep, store=store)
 
 
 def _walk_job(at: int, trial: Trial, folder: Path | None) -> InputError | None:
@@ -216,13 +230,16 @@ def _hold(
     return _held[1]
 
 
-def _chunk_job(part: _Group, keep: Sequence[bool], folder: Path | None) -> list[tuple[int, Outcome]]:
-    """In a worker: trials on one walk."""
-    walk = _hold(part.trials[0], folder)
-    return [
-        (index, _one(trial, walk, kept))
-        for index, trial, kept in zip(part.index, part.trials, keep, strict=True)
-    ]
+def _chunk_job(
+    part: _Group, keep: Sequence[bool], places: _Places
+) -> list[tuple[int, tuple[Row, ...], Kept | None]]:
+    """In a worker: trials on one walk. The trials themselves stay here: their scenarios are big."""
+    walk = _hold(part.trials[0], places.walks)
+    found = []
+    for index, trial, kept in zip(part.index, part.trials, keep, strict=True):
+        outcome = _one(trial, walk, kept, places.footfalls)
+        found.append((index, outcome.rows, outcome.kept))
+    return found
 
 
 def _start_worker(shared: Any) -> None:

@@ -12,6 +12,7 @@ from footfall.errors import InputError
 from footfall.hdr.directions import DirectionParams
 from footfall.hdr.method import Method
 from footfall.hdr.methods import find_method, tracks
+from footfall.hdr.streamed import StreamedReckoning
 from footfall.hdr.tracks import Reckoning
 from footfall.models.imu import (
     ImuSpec,
@@ -29,6 +30,7 @@ from footfall.pdr.track import Track
 from footfall.recording import Recording
 from footfall.scenarios.judge.score import Score, score
 from footfall.scenarios.scenario import Scenario
+from footfall.scenarios.store import Reckoned, footfalls_file, read_footfalls, write_footfalls
 from footfall.simulate.budget import DriftBudget
 from footfall.simulate.plan import Plan
 from footfall.simulate.record import record, record_with_budget
@@ -266,7 +268,7 @@ def recording_of(trial: Trial, walk: Walk) -> Recording:
     return record(walk, trial.worn, **_weather(trial))
 
 
-def perform(trial: Trial, walk: Walk, *, keep: bool = False) -> Outcome:
+def perform(trial: Trial, walk: Walk, *, keep: bool = False, store: Path | None = None) -> Outcome:
     """Record the trial's walk, navigate by each method and score.
 
     What a recording, method or score refuses becomes the `error` of its row.
@@ -275,6 +277,7 @@ def perform(trial: Trial, walk: Walk, *, keep: bool = False) -> Outcome:
     ----------
     walk : of the trial (`walk_of`)
     keep : whether walk, recording, drift budget and tracks are part of the outcome
+    store : folder of footfalls that are taken from there, or kept there, where no method needs samples
     """
     blank = Row(
         scenario=trial.setup.scenario.name,
@@ -287,30 +290,51 @@ def perform(trial: Trial, walk: Walk, *, keep: bool = False) -> Outcome:
         method="",
         walk_sha=walk.sha,
     )
-    budget, names = None, [method.name for method in trial.setup.methods]
+    setup, budget = trial.setup, None
     try:
         if keep:
             told = _weather(trial)
-            recording, budget = record_with_budget(walk, trial.worn, **told, bias_time=trial.setup.pdr.bias_s)
+            recording, budget = record_with_budget(walk, trial.worn, **told, bias_time=setup.pdr.bias_s)
+            given, sha = reckoning(setup, walk, recording), recording.sha
+        elif store is not None and all(method.needs == "footfalls" for method in setup.methods):
+            given, sha = _stored(trial, walk, store)
         else:
             recording = recording_of(trial, walk)
-        given = reckoning(trial.setup, walk, recording)
+            given, sha = reckoning(setup, walk, recording), recording.sha
     except InputError as error:
-        return Outcome(
-            trial, tuple(replace(blank, method=name, stage="record", error=str(error)) for name in names)
-        )
-    blank = replace(blank, recording_sha=recording.sha)
+        refused = replace(blank, stage="record", error=str(error))
+        return Outcome(trial, tuple(replace(refused, method=method.name) for method in setup.methods))
+    blank = replace(blank, recording_sha=sha)
     rows, made = [], {}
     for method in trial.setup.methods:
         row, stage = replace(blank, method=method.name), "track"
         try:
-            track = made[method.name] = tracks(given, [method])[method.name]
+            track = made[method.name] = (
+                method.track(given) if budget is None else tracks(given, [method])[method.name]
+            )
             row, stage = replace(row, footfalls=len(track)), "score"
             row = replace(row, score=score(track, walk))
         except InputError as error:
             row = replace(row, stage=stage, error=str(error))
         rows.append(row)
-    return Outcome(trial, tuple(rows), Kept(walk, recording, budget, made) if budget is not None else None)
+    kept = None if budget is None else Kept(walk, recording, budget, made)
+    return Outcome(trial, tuple(rows), kept)
+
+
+def _stored(trial: Trial, walk: Walk, store: Path) -> tuple[Reckoning, str]:
+    """What the methods are told, of footfalls that are kept; and the hash of their recording."""
+    file = footfalls_file(store, trial, walk.sha)
+    found = read_footfalls(file)
+    if found is None:
+        recording = recording_of(trial, walk)
+        given = reckoning(trial.setup, walk, recording)
+        try:
+            found = Reckoned(given.footfalls, recording.sha)
+        except InputError:  # which every method is to tell
+            return given, recording.sha
+        write_footfalls(file, found)
+    start = start_pose(walk, trial.setup.pdr.bias_s)
+    return StreamedReckoning(lambda: found.footfalls, start, trial.setup.directions), found.recording_sha
 
 
 def failed(trial: Trial, error: InputError) -> Outcome:

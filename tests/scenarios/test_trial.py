@@ -20,6 +20,7 @@ from footfall.scenarios.judge.score import Score, score
 from footfall.scenarios.parameters import documents, with_values
 from footfall.scenarios.scenario import build_scenario, load_scenario
 from footfall.scenarios.trial import Trial, find, perform, recording_of, setup, start_pose, walk_of
+from footfall.simulate import cache
 from footfall.simulate.record import record
 
 
@@ -147,7 +148,7 @@ def test_a_walk_that_falls_is_rows_while_the_rest_goes_on(short, workers):
     pushed = setup(short.changed("disturbance", push_Ns=30.0, every_s=1.0))
     todo = [*cases(pushed, units=2, walks=1), *cases(setup(short), units=2, walks=1)]
     outcomes = list(execute(todo, workers=workers))
-    assert [outcome.trial for outcome in outcomes] == todo
+    assert all(outcome.trial is trial for outcome, trial in zip(outcomes, todo, strict=True))
     for outcome in outcomes[:2]:
         assert {row.stage for row in outcome.rows} == {"walk"}
         assert "fell" in outcome.rows[0].error
@@ -160,13 +161,13 @@ def test_a_walk_that_falls_is_rows_while_the_rest_goes_on(short, workers):
 
 def test_walks_are_shared_by_whatever_changes_no_walk(short, monkeypatch, tmp_path):
     walked = []
-    real = trials.cached_walk
+    real = cache.cached_walk
 
     def counted(plan, **keys):
         walked.append(plan.seed)
         return real(plan, **keys)
 
-    monkeypatch.setattr(trials, "cached_walk", counted)
+    monkeypatch.setattr(cache, "cached_walk", counted)
     called = replace(short.document, name="called otherwise")
     settings = [
         setup(short, methods=["pdr"]),
@@ -178,7 +179,7 @@ def test_walks_are_shared_by_whatever_changes_no_walk(short, monkeypatch, tmp_pa
     todo = [Trial(made, number, 3 + number, unit, unit) for made in settings for number, unit in worn]
     outcomes = list(execute(todo, workers=1))
     assert sorted(walked) == [3, 4]
-    assert [outcome.trial for outcome in outcomes] == todo
+    assert all(outcome.trial is trial for outcome, trial in zip(outcomes, todo, strict=True))
     assert len({outcome.rows[0].walk_sha for outcome in outcomes}) == 2
     assert [outcome.rows[0].scenario for outcome in outcomes[8:12]] == ["called otherwise"] * 4
     slower = setup(short.changed("gait", pace_m_s=1.1), methods=["pdr"])
@@ -193,6 +194,42 @@ def test_two_processes_give_what_one_gives(short, monkeypatch):
     two = [outcome.rows for outcome in execute(todo, workers=2)]
     assert one == two
     assert len({row.recording_sha for rows in two for row in rows}) == 5
+
+
+def test_footfalls_that_are_kept_give_the_same_rows_without_a_recording(short, tmp_path, monkeypatch):
+    made = with_values(documents("closed-loop"), {"hdr.theta_w_deg_s": 0.5}).setup()
+    todo = cases(setup(short), units=3)
+    before = [outcome.rows for outcome in execute(todo, workers=1)]
+    assert [outcome.rows for outcome in execute(todo, workers=1, store=tmp_path)] == before
+    assert len(list(tmp_path.rglob("*.npz"))) == 3
+    recorded = []
+    real = trials.record
+    monkeypatch.setattr(trials, "record", lambda *given, **keys: recorded.append(1) or real(*given, **keys))
+    assert [outcome.rows for outcome in execute(todo, workers=1, store=tmp_path)] == before
+    assert not recorded
+    # Other parameters of a method need no recording; another noise, sheet or tilt gain does.
+    wide = [replace(one, setup=replace(one.setup, methods=made.methods)) for one in todo]
+    assert [outcome.rows[0] for outcome in execute(wide, workers=1, store=tmp_path)] == [
+        rows[0] for rows in before
+    ]
+    assert not recorded
+    tilted = replace(todo[0].setup, pdr=PdrParams(tilt_gain=0.4))
+    for other in (
+        replace(todo[0], noise_seed=77),
+        replace(todo[0], unit_seed=77),
+        replace(todo[0], setup=tilted),
+        replace(todo[0], setup=replace(todo[0].setup, without=("white",))),
+        replace(todo[0], setup=replace(todo[0].setup, unit={"gyro.scale": [0.0, 0.0, 0.1]})),
+    ):
+        (found,) = execute([other], workers=1, store=tmp_path)
+        assert found.rows == perform(other, walk_of(other)).rows
+    assert len(recorded) == 10
+    # A damaged file is made again; methods on samples ask nothing of it.
+    next(tmp_path.rglob("*.npz")).write_bytes(b"PK")
+    assert [outcome.rows for outcome in execute(todo, workers=1, store=tmp_path)] == before
+    files = len(list(tmp_path.rglob("*.npz")))
+    list(execute(cases(setup(short, methods=["iez"]), units=1), workers=1, store=tmp_path))
+    assert len(list(tmp_path.rglob("*.npz"))) == files
 
 
 def test_units_are_dealt_to_the_walks_or_worn_on_all(short):

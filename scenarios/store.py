@@ -1,0 +1,63 @@
+"""Footfalls by content: what a unit made of a walk is dead-reckoned once, whatever methods go over it."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from footfall.errors import InputError
+from footfall.identity import digest_of
+from footfall.pdr.footfalls import Footfalls
+from footfall.sources import stage_digest
+from footfall.tables import replacing
+
+if TYPE_CHECKING:
+    from footfall.scenarios.trial import Trial
+
+_FIELDS = ("t", "interval", "distance", "rate", "heading")
+
+
+class Reckoned(NamedTuple):
+    """Dead reckoning of a recording, and the hash of that recording's content."""
+
+    footfalls: Footfalls
+    recording_sha: str
+
+
+def footfalls_file(folder: Path, trial: Trial, walk_sha: str) -> Path:
+    """Where the footfalls of a trial are kept: by all that makes them, and by nothing else."""
+    made, scenario = trial.setup, trial.setup.scenario
+    key = digest_of(
+        walk_sha,
+        stage_digest("record"),
+        stage_digest("reckon"),
+        trial.worn,
+        trial.noise_seed,
+        scenario.temperature_of(trial.number),
+        scenario.unit_bias_shift(trial.unit_seed),
+        sorted(made.without),
+        made.pdr,
+    )
+    return folder / key[:2] / f"{key[:32]}.npz"
+
+
+def read_footfalls(file: Path) -> Reckoned | None:
+    """What is kept in a file; None where there is none, or a damaged one."""
+    try:
+        with np.load(file, allow_pickle=False) as kept:
+            columns = {name: kept[name] for name in _FIELDS}
+            return Reckoned(Footfalls(position=kept["position"], **columns), str(kept["recording_sha"]))
+    except (OSError, ValueError, KeyError, EOFError):
+        return None
+
+
+def write_footfalls(file: Path, found: Reckoned) -> None:
+    """Keep footfalls. A full disk costs only that they are reckoned again."""
+    columns = {name: getattr(found.footfalls, name) for name in (*_FIELDS, "position")}
+    with suppress(OSError, InputError):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(file) as temporary, temporary.open("wb") as out:
+            np.savez(out, recording_sha=np.array(found.recording_sha), **columns)
