@@ -104,13 +104,9 @@ def execute(
     with ExitStack() as stack:
         folder = None if use_cache else Path(stack.enter_context(tempfile.TemporaryDirectory()))
         workers = min(workers or cores(), len(trials))
-        run = _here if workers <= 1 else partial(_spread, workers=workers)
+        to_walk = not all(is_cached(key, folder) for key in groups)
+        run = _here if workers <= 1 else partial(_spread, workers=workers, to_walk=to_walk)
         report = on_progress or (lambda now: None)
-        if workers > 1:  # or every worker would compile the same
-            progress.compiling = True
-            report(progress)
-            warm(trials[0], walks=not all(is_cached(key, folder) for key in groups))
-            progress.compiling = False
         yield from _in_order(run(work, _Places(folder, store), frozenset(keep), progress, report))
 
 
@@ -156,10 +152,15 @@ def _spread(
     report: Callable[[Progress], None],
     *,
     workers: int,
+    to_walk: bool,
 ) -> Iterator[tuple[int, Outcome]]:
     """Over processes: each walk is a job of its own; what needs it follows in chunks."""
     own = {index: trial for group in work for index, trial in zip(group.index, group.trials, strict=True)}
     with worker_pool(workers, len(work)) as (pool, metres):
+        progress.compiling = True
+        report(progress)
+        warm(work[0].trials[0], walks=to_walk)  # or every worker would compile the same
+        progress.compiling = False
         walking: dict[Future[Any], int] = {
             pool.submit(_walk_job, at, group.trials[0], places.walks): at for at, group in enumerate(work)
         }
