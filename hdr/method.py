@@ -13,6 +13,9 @@ from footfall.identity import plain
 from footfall.pdr.track import Track
 from footfall.settings import changed
 
+# Files of a run beside its tracks, and areas of addresses.
+TAKEN = ("footfalls", "recording", "drift", "scenario", "imu", "unit", "filter", "seed")
+
 Needs = Literal["footfalls", "samples"]
 Goes = Literal["none", "count", "all"]
 
@@ -85,7 +88,9 @@ class Method:
 
 
 def require_name(name: str) -> str:
-    """Refuse what is no name for files and addresses: letters, digits, - and _."""
+    """Refuse what is no name for files and addresses: letters, digits, - and _; no file or area has it."""
+    if name in TAKEN:
+        raise InputError(f"method name {name!r}: this is Footfall's own name for something else")
     if not name or not name.replace("-", "a").replace("_", "a").isalnum():
         raise InputError(f"method name {name!r}: expected letters, digits, - and _")
     return name

@@ -248,6 +248,10 @@ def find_method(
     else:
         found = adapted(use, name=name, needs=needs)
     found = found if name is None or found.name == name else found.renamed(name)
+    if found.version and found.name in METHODS:
+        raise InputError(
+            f"method name {found.name!r} is that of a built-in one: call yours otherwise", found.use or None
+        )
     if params is None:
         return found
     return found.with_params(params) if isinstance(params, Mapping) else replace(found, params=params)

@@ -22,7 +22,7 @@ def methods_of(text: str) -> list[Method]:
     found = []
     for part in dict.fromkeys(part.strip() for part in text.split(",")):
         name, equals, use = part.partition("=")
-        found.append(find_method(use).renamed(name) if equals else find_method(part))
+        found.append(find_method(use, name=name) if equals else find_method(part))
     return found
 
 

@@ -22,9 +22,6 @@ from footfall.simulate.budget import write_budget
 from footfall.simulate.walk import write_walk
 
 _FIGURES = "|".join((*FIGURES, *HEADING_FIGURES))
-_OURS = re.compile(
-    rf"walk-\d+(\.(footfalls|recording|drift|{'|'.join(METHODS)}))?\.parquet|({_FIGURES})\.png"
-)
 
 
 @contextmanager
@@ -70,7 +67,8 @@ def write_results(results: Sequence[Result], document: Mapping[str, Any], folder
             blocked = sorted(file.name for file in staging.iterdir() if (folder / file.name).is_dir())
             if blocked:
                 raise InputError(f"{folder / blocked[0]}: a folder stands where a result is to be written")
-            earlier = {file.name for file in folder.iterdir() if _OURS.fullmatch(file.name)}
+            ours = _names_of_a_run(folder)
+            earlier = {file.name for file in folder.iterdir() if ours.fullmatch(file.name)}
             written = {file.name for file in staging.iterdir()}
             for name in written:
                 (staging / name).replace(folder / name)
@@ -78,6 +76,16 @@ def write_results(results: Sequence[Result], document: Mapping[str, Any], folder
                 (folder / name).unlink()
     except OSError as error:
         raise InputError(f"{folder}: cannot be written ({error.strerror})") from None
+
+
+def _names_of_a_run(folder: Path) -> re.Pattern[str]:
+    """What files of a run are called, of the run that was written there too: its scores tell its methods."""
+    methods = set(METHODS)
+    with suppress(OSError, ValueError, LookupError, TypeError):
+        for walk in json.loads((folder / "scores.json").read_text(encoding="utf-8"))["walks"]:
+            methods |= set(walk["methods"])
+    tracks = "|".join(map(re.escape, sorted(methods)))
+    return re.compile(rf"walk-\d+(\.(footfalls|recording|drift|{tracks}))?\.parquet|({_FIGURES})\.png")
 
 
 def _write_all(results: Sequence[Result], document: Mapping[str, Any], folder: Path) -> None:

@@ -278,6 +278,17 @@ def test_a_built_in_method_is_never_replaced(installed):
     assert find_method("hdr") is METHODS["hdr"]
 
 
+def test_the_name_of_a_built_in_method_is_not_given_away(nav, installed):
+    use = nav(GOOD)
+    with pytest.raises(InputError, match=r"Mine: method name 'hdr' is that of a built-in one: call yours"):
+        find_method(use, name="hdr")
+    assert find_method("hdr", name="hdr", params={"tau_s": 3.0}).params.tau_s == 3.0
+    with pytest.raises(InputError, match=r"'recording': this is Footfall's own name for something else"):
+        find_method(use, name="recording")
+    with pytest.raises(InputError, match=r"'imu': this is Footfall's own name for something else"):
+        METHODS["hdr"].renamed("imu")
+
+
 def test_two_packages_with_one_name_are_told(installed):
     installed(twice=["one:A", "two:B"])
     with pytest.raises(InputError, match=r"^twice: several packages have it: one:A, two:B; say which$"):

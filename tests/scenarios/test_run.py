@@ -281,6 +281,17 @@ def test_a_later_run_leaves_nothing_of_an_earlier_one_and_all_of_its_users(cli, 
     assert set(os.listdir(here / "new")) == left | {"notes.txt", "walk-1.mine.parquet", "walk-2.png"}
 
 
+def test_a_later_run_leaves_nothing_of_an_earlier_ones_own_methods(cli, here):
+    """Whose names the scores tell."""
+    options = "--walks 1 --noises 0 --units 0 --out new"
+    assert cli(f"run short.toml --methods pdr,quick=hdr {options}")[0] == 0
+    assert (here / "new" / "walk-1.quick.parquet").exists()
+    (here / "new" / "walk-1.slow.parquet").write_text("its user's")
+    assert cli(f"run short.toml --methods pdr {options}")[0] == 0
+    assert not (here / "new" / "walk-1.quick.parquet").exists()
+    assert (here / "new" / "walk-1.slow.parquet").exists()
+
+
 def test_a_results_folder_is_taken_away_again_where_the_work_fails(tmp_path):
     (tmp_path / "old").mkdir()
     (tmp_path / "old" / "kept.txt").touch()
