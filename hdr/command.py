@@ -17,16 +17,17 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.csv as pa_csv
 
 from footfall.errors import InputError
 from footfall.hdr.method import Method, require_name
 from footfall.hdr.sound import require_sound
 from footfall.hdr.tracks import Reckoning
 from footfall.identity import plain
+from footfall.late import late
 from footfall.pdr.track import Track, read_track
 from footfall.recording import ACCEL, GYRO, Recording, write_recording
+
+pa, pa_csv = late("pyarrow"), late("pyarrow.csv")
 
 RecordingFormat = Literal["f64", "csv", "parquet"]
 PLACES = ("recording", "track", "start", "params", "rate")

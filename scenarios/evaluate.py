@@ -9,8 +9,8 @@ from pickle import PicklingError, dumps
 from typing import Any, overload
 
 import numpy as np
-from footfall.hdr.method import Method
 
+from footfall.hdr.method import Method
 from footfall.pdr.track import Track
 from footfall.scenarios.execute import Progress, execute
 from footfall.scenarios.parameters import documents, with_values

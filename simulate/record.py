@@ -92,11 +92,8 @@ def record_with_budget(
 
 def _shift(gyro: np.ndarray, walk: Walk, bias_shift: float) -> None:
     """Add a bias of `bias_shift` rad/s about the vertical, from the first step on, to the gyro (n, 3)."""
-    up = (
-        transform.Rotation.from_quat(walk.quaternion[0], scalar_first=True)
-        .inv()
-        .apply([0.0, 0.0, bias_shift])
-    )
+    rest = transform.Rotation.from_quat(walk.quaternion[0], scalar_first=True)
+    up = rest.inv().apply([0.0, 0.0, bias_shift])
     first = int(np.searchsorted(walk.t - walk.t[0], walk.calibration_s + 1e-6, side="right"))
     gyro[first:] += up
 

@@ -9,10 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from footfall.models.imu import _kernels
+from footfall.late import late
 from footfall.models.imu.names import EFFECTS, require_effects
 from footfall.models.imu.unit import ImuUnit, TriadUnit
 from footfall.streams import stream
+
+_kernels = late("footfall.models.imu._kernels")
 
 # A Gauss-Markov process per decade of correlation time, each of standard deviation .856 B, adds up to an
 # Allan deviation of .664 B: within 3 % from 1 s to 3,000 s.
