@@ -215,6 +215,7 @@ def _after(said: str) -> str:
 
 def _end(process: subprocess.Popen[bytes]) -> None:
     """End it and all that it has started."""
-    with contextlib.suppress(OSError):
-        os.killpg(process.pid, signal.SIGKILL) if hasattr(os, "killpg") else process.kill()
+    with contextlib.suppress(OSError, AttributeError):  # Windows has no groups
+        os.killpg(process.pid, signal.SIGKILL)
+    process.kill()
     process.wait()

@@ -422,6 +422,20 @@ def test_a_turn_on_the_spot_is_none_that_jumps(reckoning, nav):
     find_method(nav(f"def Mine(recording, start):\n    {TWO}; return Track(t, z, t * 4.0)")).track(reckoning)
 
 
+@pytest.mark.parametrize(("first", "last"), [(0.0, 16.3), (-0.004, 16.304), (-0.006, 16.3), (0.0, 16.306)])
+def test_stamps_may_miss_the_recording_by_a_sample(reckoning, first, last):
+    def mine(recording, start):
+        return Track(np.array([first, last]), np.zeros((2, 3)), np.zeros(2))
+
+    assert reckoning.recording.t[-1] == pytest.approx(16.3)
+    method = find_method(mine)
+    if first < -0.005 or last > 16.305:
+        with pytest.raises(InputError, match=r"of a recording from 0 to 16\.3 s"):
+            method.track(reckoning)
+    else:
+        method.track(reckoning)
+
+
 def test_the_place_of_a_mistake_is_in_the_methods_file(reckoning, nav):
     use = nav("def Mine(recording, start):\n    return np.linalg.inv(np.zeros((2, 2)))")
     with pytest.raises(InputError, match=r"LinAlgError: Singular matrix \(nav.py, line 5\)$"):
