@@ -6,6 +6,7 @@ The names of `__all__` are imported when they are first used: `import footfall` 
 """
 
 from importlib import import_module
+from os.path import dirname, isdir, join
 from typing import TYPE_CHECKING, Any
 
 from footfall._gymnasium import register_when_imported
@@ -55,6 +56,14 @@ _HOMES = {
     "score": "scenarios.judge.score",
     "track": "tracking",
 }
+
+
+for _room in (join(dirname(__file__), name) for name in ("models", "simulate", "pdr", "hdr", "scenarios")):
+    if not isdir(_room):
+        raise ImportError(
+            f"{_room} should be a symbolic link to a folder, and git has not made it one: "
+            "check out again with `git clone -c core.symlinks=true`"
+        )
 
 
 def __getattr__(name: str) -> Any:
