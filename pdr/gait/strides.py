@@ -132,7 +132,7 @@ def aligned(signals: Signals) -> Signals:
     """
     rows = middles(signals)
     if len(rows) < 4:
-        raise InputError(f"recording: {len(rows)} stances found, expected a walk")
+        raise InputError(f"{len(rows)} stances found, expected a walk", "recording")
     gyro = signals.gyro - signals.gyro[: int(REST_S * RATE_HZ)].mean(axis=0)
     half = int(QUIET_S / 2 * RATE_HZ)
     up = np.mean([signals.accel[row - half : row + half + 1].mean(axis=0) for row in rows[1:-1]], axis=0)
@@ -233,7 +233,7 @@ def strides_of(signals: Signals, *, left: bool = False) -> Foot:
     ]
     if len(steady) < 2:
         raise InputError(
-            f"recording: {len(rows)} stances but {len(steady)} steady, straight strides, expected 2 or more"
+            f"{len(rows)} stances but {len(steady)} steady, straight strides, expected 2 or more", "recording"
         )
     return Foot(signals, tuple(steady))
 

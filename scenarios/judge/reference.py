@@ -95,10 +95,10 @@ def read_footprints(path: str | os.PathLike[str]) -> Footprints:
     for name in names:
         if not np.isfinite(columns[name]).all():
             row = int(np.argmin(np.isfinite(columns[name])))
-            raise InputError(f"{path}: {name} is not finite at row {row}")
+            raise InputError(f"{name} is not finite at row {row}", path)
     t = np.asarray(columns["t"], dtype=float)
     if len(t) < FEWEST or (np.diff(t) <= 0).any():
-        raise InputError(f"{path}: expected at least {FEWEST} footprints with increasing t")
+        raise InputError(f"expected at least {FEWEST} footprints with increasing t", path)
     return Footprints(t, np.column_stack([columns["x"], columns["y"]]).astype(float))
 
 
@@ -123,8 +123,9 @@ def laid_on(track: Track, prints: Footprints) -> RigidMotion:
     rows, of = matches(track, prints)
     if len(of) < FEWEST:
         raise InputError(
-            f"track: {len(of)} of {len(prints)} footprints have a footfall within {NEAR_S:g} s, "
-            f"expected at least {FEWEST}: their times are not the recording's"
+            f"{len(of)} of {len(prints)} footprints have a footfall within {NEAR_S:g} s, "
+            f"expected at least {FEWEST}: their times are not the recording's",
+            "track",
         )
     return rigid_fit(track.position[rows, :2], prints.position[of])
 
@@ -158,6 +159,6 @@ def score_closure(track: Track) -> ClosureScore:
     """
     distance = float(np.hypot(*np.diff(track.position[:, :2], axis=0).T).sum())
     if distance == 0:
-        raise InputError("track: it does not move")
+        raise InputError("it does not move", "track")
     end = float(np.hypot(*(track.position[-1] - track.position[0])[:2]))
     return ClosureScore(end, 100 * end / distance, distance, len(track))

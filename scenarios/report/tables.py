@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from footfall.scenarios.judge.papers import HDR_TABLE_2, HDR_TABLE_2_MEAN, IHDE_TABLE_2, range_text
+from footfall.scenarios.judge.reference import ClosureScore, FootprintScore
 from footfall.scenarios.judge.score import Align, Score, improvement, mean_score
 from footfall.scenarios.judge.statistics import extent, spread
 from footfall.simulate.plan import versions
@@ -278,6 +279,30 @@ def score_table(score: Score, align: Align = "none") -> Group:
     for key, value in score.as_dict().items():
         table.add_row(_SCORE_LABELS[key], f"{value:.3f}")
     return titled(f"Errors, estimate against truth ({_ALIGNED[align]})", table)
+
+
+_REFERENCE_LABELS = {
+    "footprint_rmse_m": "from the footprints, RMS (m)",
+    "footprint_largest_m": "from the footprints, largest (m)",
+    "footprints": "footprints",
+    "matched": "of them with a footfall near in time",
+    "return_error_m": "end from start (m)",
+    "return_error_pct": "return error (% of the distance)",
+    "distance_m": "distance (m)",
+    "footfalls": "footfalls",
+}
+
+
+def reference_table(score: FootprintScore | ClosureScore) -> Group:
+    """One row a figure of a track without a true walk."""
+    table = new_table("", "")
+    for key, value in score.as_dict().items():
+        table.add_row(_REFERENCE_LABELS[key], f"{value:.3f}" if isinstance(value, float) else f"{value}")
+    fitted = isinstance(score, FootprintScore)
+    return titled(
+        "Track over its footprints (shift and turn fitted)" if fitted else "Track of a walk that is closed",
+        table,
+    )
 
 
 def _pair(score: Score) -> str:

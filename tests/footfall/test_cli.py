@@ -230,6 +230,29 @@ def test_anyones_track_can_be_scored(cli, here):
     assert one_document(out) == pytest.approx(dict.fromkeys(SCORES, 0) | {"align": "none"}, abs=1e-9)
 
 
+def test_a_track_without_a_true_walk_can_be_scored(cli, here):
+    """The walk's own footfalls, as if measured in a frame that is turned by a quarter and shifted."""
+    falls, _ = read_table("walk.footfalls.parquet")
+    write_csv("prints.csv", {"t": falls["t"], "x": 5 - falls["y"], "y": falls["x"] - 9})
+    code, out, err = cli("score hdr.parquet --footprints prints.csv")
+    assert (code, err) == (0, "")
+    assert "shift and turn fitted" in out
+    over = one_document(cli("score hdr.parquet --footprints prints.csv --json")[1])
+    assert f"{over['footprint_rmse_m']:.3f}" in out
+    aligned = one_document(cli("score hdr.parquet walk.parquet --align rigid --json")[1])
+    assert over["footprint_rmse_m"] == pytest.approx(aligned["position_rmse_m"], abs=0.02)
+    # The last instant of rest is another one to the truth than to the track.
+    assert len(falls["t"]) == over["footprints"] == over["matched"] + 1
+
+    code, out, err = cli("score hdr.parquet --closed")
+    assert (code, err) == (0, "")
+    closed = one_document(cli("score hdr.parquet --closed --json")[1])
+    track, _ = read_table("hdr.parquet")
+    end = np.hypot(track["x"][-1] - track["x"][0], track["y"][-1] - track["y"][0])
+    assert closed["return_error_m"] == pytest.approx(end)
+    assert f"{end:.3f}" in out
+
+
 # allan
 
 
