@@ -132,7 +132,9 @@ def test_a_dataclass_has_its_fields_for_parameters(reckoning, found):
 
 
 @pytest.mark.parametrize(
-    ("found", "before"), [(by_default, 0.5), (by_annotation, 0.5), (untyped, 0.25)], ids=lambda x: str(x)
+    ("found", "before"),
+    [(by_default, 0.5), (by_annotation, 0.5), (untyped, 0.25)],
+    ids=lambda given: getattr(given, "__name__", str(given)),
 )
 def test_a_third_argument_is_given_the_parameters(reckoning, found, before):
     method = find_method(found)
