@@ -9,6 +9,7 @@ from footfall.cli.terminal import OUT, print_json
 def list_(as_json: JsonOption = False) -> None:
     """Show what comes with Footfall: scenarios, IMUs, methods, detectors, mounts and sensor effects."""
     from footfall.hdr.methods import METHODS
+    from footfall.hdr.others import entry_point_names
     from footfall.models.imu import EFFECTS, load_spec, stock_specs
     from footfall.models.mount import MOUNTS
     from footfall.pdr.detectors import DETECTORS, summary
@@ -20,6 +21,7 @@ def list_(as_json: JsonOption = False) -> None:
     scenarios = {name: checked(read_document(name).table, ScenarioFile, name) for name in stock_scenarios()}
     imus = {name: load_spec(name).name for name in stock_specs()}
     methods = {name: method.description for name, method in METHODS.items()}
+    methods |= {name: "of an installed package" for name in entry_point_names() if name not in METHODS}
     detectors = {name: summary(found) for name, found in DETECTORS.items()}
     if as_json:
         print_json(

@@ -12,6 +12,7 @@ from footfall.hdr import check as module
 from footfall.hdr.check import Case, checks, synthetic_case
 from footfall.hdr.methods import METHODS, find_method
 from footfall.hdr.tracks import Reckoning
+from tests.helpers.commands import one_document
 from tests.helpers.places import DOCS
 
 EXAMPLES = DOCS / "examples" / "methods"
@@ -90,6 +91,12 @@ def test_a_method_of_an_installed_package(case, installed):
     assert method.name == "smoothed"
     passes(method)
     assert np.abs(np.diff(ran(method, case).heading)).max() < np.abs(np.diff(case_heading(case))).max()
+
+
+def test_an_installed_method_is_listed(cli, installed):
+    code, out, _ = cli("list --json")
+    assert code == 0
+    assert list(one_document(out)["methods"]) == [*METHODS, *installed]
 
 
 def case_heading(case):
