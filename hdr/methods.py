@@ -267,12 +267,6 @@ def _require_findable(use: str) -> None:
     raise InputError(f"method {use!r} is unknown, expected one of {known}, {FORMS}")
 
 
-def require_methods(names: Iterable[str]) -> None:
-    """Raise InputError when a method of any of these names does not exist."""
-    for name in names:
-        find_method(name)
-
-
 def told_directions(method: str | Method, directions: int | None, reference: float | None) -> DirectionParams:
     """The dominant directions that a method is told: how many, and one of them (rad); None for untold.
 
