@@ -11,7 +11,9 @@ HAIR = (0.25, 0.18, 0.13, 1.0)
 SHOE = (0.92, 0.92, 0.95, 1.0)
 
 
-def add_look(body: mujoco.MjsBody, start: list[float], end: list[float], radius: float, rgba: tuple) -> None:
+def add_look(
+    body: mujoco.MjsBody, start: list[float], end: list[float], radius: float, rgba: tuple[float, ...]
+) -> None:
     """A capsule that is only seen."""
     body.add_geom(
         type=mujoco.mjtGeom.mjGEOM_CAPSULE,

@@ -9,6 +9,7 @@ ground contact acts.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -195,7 +196,7 @@ def _joint(
     joint.stiffness = [stiffness, 0, 0]
 
 
-def _contact(build: Build) -> dict:
+def _contact(build: Build) -> dict[str, Any]:
     """A sole on the ground: it resists twisting like a patch, not like a point, and hardly creeps."""
     return {
         "condim": 4,

@@ -177,7 +177,13 @@ def _dashes(route: Route) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _add(
-    scene: Any, kind: int, size: tuple[float, ...], place: np.ndarray, psi: float, rise: float, rgba: tuple
+    scene: Any,
+    kind: int,
+    size: tuple[float, ...],
+    place: np.ndarray,
+    psi: float,
+    rise: float,
+    rgba: tuple[float, ...],
 ) -> None:
     """Add what lies on the ground, along `psi` and as steep as `rise`."""
     if scene.ngeom >= scene.maxgeom:

@@ -88,7 +88,7 @@ def schedule(samples: int, total: int) -> tuple[float, Schedule]:
     return level, Schedule(log_sd_max, rate_max)
 
 
-def save_policy(learner: Learner, gains: np.ndarray, path: Path, meta: dict) -> None:
+def save_policy(learner: Learner, gains: np.ndarray, path: Path, meta: dict[str, Any]) -> None:
     """Write the policy as npz for `models.policy`."""
     arrays: dict[str, Any] = {"feedback_gains": gains, "meta": np.array(json.dumps(meta))}
     for i, layer in enumerate(module for module in learner.policy if isinstance(module, torch.nn.Linear)):
