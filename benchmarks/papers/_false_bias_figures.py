@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks.papers._false_bias import PAPER, Feet, coupling
 from footfall.pdr.filter.ins import FilterSettings, frozen
 from footfall.pdr.filter.run import run_filter
-from footfall.scenarios.report.figures import new_figure, save
+from footfall.scenarios.report.style import new_figure, save
 
 _AXES = (("forward", "#888888"), ("to the left", "#c1440e"), ("up", "#1f6fb4"))
 _BINS = 12

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from footfall.scenarios.report.figures import new_figure, save
+from footfall.scenarios.report.style import new_figure, save
 
 _LABELS = ("tuning units", "judged units (hindsight)")
 _COLOURS = ("#1f6fb4", "#c98a00")

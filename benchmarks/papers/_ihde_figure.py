@@ -10,8 +10,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from footfall.scenarios.judge.papers import IHDE_TABLE_2
-from footfall.scenarios.report.figures import colours_of, head, label_of, maps, new_panels, save
+from footfall.scenarios.report.figures import maps
 from footfall.scenarios.report.heading_figures import evaluation
+from footfall.scenarios.report.style import colours_of, head, label_of, new_panels, save
 from footfall.scenarios.run import Part, Result, perform_run
 from footfall.scenarios.scenario import Scenario
 from footfall.scenarios.trial import Trial, setup

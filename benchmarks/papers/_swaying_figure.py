@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from footfall.hdr.hdr import HdrParams
-from footfall.scenarios.report.figures import head, new_figure, save
+from footfall.scenarios.report.style import head, new_figure, save
 
 if TYPE_CHECKING:
     from benchmarks.papers.swaying import Motion

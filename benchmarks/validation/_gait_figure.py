@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from footfall.pdr.gait.strides import N_PHASE
-from footfall.scenarios.report.figures import new_figure, save
+from footfall.scenarios.report.style import new_figure, save
 
 # Column of the normalised signals -> what it is; degrees for rates.
 _PANELS = {

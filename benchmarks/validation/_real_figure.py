@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.validation._real import Real
 from footfall.pdr.track import Track
 from footfall.scenarios.judge.reference import laid_on
-from footfall.scenarios.report.figures import head, label_edges, new_panels, save
+from footfall.scenarios.report.style import head, label_edges, new_panels, save
 
 SHOWN = {"pdr": "#c1440e", "iez": "#1f6fb4", "iez-paper": "#888888"}
 

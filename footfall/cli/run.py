@@ -87,8 +87,9 @@ def run(
     from footfall.cli.choices import dropped_effects, methods_of, told_directions
     from footfall.cli.progress import perform_showing
     from footfall.scenarios.parameters import documents, parsed, with_values
-    from footfall.scenarios.report import tables as report
+    from footfall.scenarios.report.document import run_document
     from footfall.scenarios.report.results import results_folder, write_results
+    from footfall.scenarios.report.tables import run_report
     from footfall.scenarios.run import parts
 
     chosen = methods_of(methods)
@@ -102,12 +103,12 @@ def run(
     folder = out or Path("out") / name
     with results_folder(folder):
         results = perform_showing(todo, use_cache=not no_cache)
-        document = report.as_json(name, results)
+        document = run_document(name, results)
         with ERR.status("writing files and figures"):
             write_results(results, document, folder)
     if as_json:
         print_json(document)
     else:
-        for part in report.run_report(name, results):
+        for part in run_report(name, results):
             OUT.print(part)
     say(f"Scores, walks, tracks and figures are in {folder}")

@@ -69,7 +69,7 @@ def allan_table(report: Mapping[str, float]) -> Group:
 
 
 def _draw(recording: Recording, bias_time: float, white: float, path: Path) -> None:
-    from footfall.scenarios.report.figures import head, label_edges, new_panels, save
+    from footfall.scenarios.report.style import head, label_edges, new_panels, save
 
     interval = recording.interval
     longest = (recording.t[-1] - recording.t[0]) / 5

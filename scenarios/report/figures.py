@@ -1,42 +1,33 @@
-"""Figures of a run. Matplotlib is imported only when a figure is asked for."""
+"""Figures of a run."""
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from footfall.scenarios.judge.score import compare
+from footfall.scenarios.report.style import (
+    COLOURS,
+    MORE,
+    TRUTH,
+    colours_of,
+    entitle,
+    head,
+    label_edges,
+    label_of,
+    new_panels,
+    save,
+    widths_of,
+)
 from footfall.scenarios.run import Result
-from footfall.tables import replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_TRUTH = "#222222"
-_COLOURS = {
-    "pdr": "#c1440e",
-    "hdr": "#1f6fb4",
-    "hdr-basic": "#6a9f3a",
-    "iez": "#c98a00",
-    "hde": "#6a9f3a",
-    "ihde": "#1f6fb4",
-    "ihde-plus": "#7b4fa3",
-}
-_MORE = ("#7b4fa3", "#c98a00", "#2a9d8f", "#8d5524", "#d16ba5", "#444f9b")
-_LABELS = {
-    "pdr": "PDR",
-    "hdr": "PDR + HDR",
-    "hdr-basic": "PDR + basic HDR",
-    "iez": "IEZ",
-    "hde": "HDE",
-    "ihde": "IHDE",
-    "ihde-plus": "IHDE+",
-}
 _MOST_PANELS = 8  # walks beyond these are in the tables, not in the figures
 _CAUSES = {
     "temperature": "#c1440e",
@@ -50,108 +41,6 @@ _CAUSES = {
     "g2": "#8d5524",
 }
 _SHOWN_SHARE = 0.03  # of the largest cause; smaller ones are pooled
-_STYLE: Any = {
-    "font.size": 9,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.alpha": 0.25,
-}
-
-
-def new_figure(
-    rows: int, columns: int, width: float, height: float, **kwargs: Any
-) -> tuple[Figure, np.ndarray]:
-    """A figure in the house's style with (rows, columns) axes, drawn without a screen."""
-    import matplotlib as mpl
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    with mpl.rc_context(_STYLE):
-        figure = Figure(figsize=(width, height), layout="constrained")
-        FigureCanvasAgg(figure)
-        axes = figure.subplots(rows, columns, squeeze=False, **kwargs)
-    return figure, axes
-
-
-def new_panels(
-    count: int, width: float, height: float, columns: int | None = None, **kwargs: Any
-) -> tuple[Figure, list[Axes]]:
-    """A figure of `count` panels of width x height inches, row by row, as many columns as look good."""
-    columns = columns or {1: 1, 2: 2, 3: 3, 4: 2, 5: 3, 6: 3}.get(count, 4)
-    rows = -(-count // columns)
-    width = max(width * columns, 5.2)
-    figure, grid = new_figure(rows, columns, width, height * rows + 0.6, **kwargs)
-    axes = list(grid.flat)
-    for axis in axes[count:]:
-        figure.delaxes(axis)
-    for axis in axes[max(0, count - columns) : count]:  # nothing stands below these
-        axis.tick_params(labelbottom=True)
-    return figure, axes[:count]
-
-
-def label_edges(axes: Sequence[Axes], x: str, y: str) -> None:
-    """Name the axes once: y at the left of each row, x below the lowest panel of each column."""
-    for axis in axes:
-        place = axis.get_subplotspec()
-        assert place is not None
-        columns = place.get_gridspec().ncols
-        if place.is_first_col():
-            axis.set_ylabel(y)
-        if place.num1 + columns >= len(axes):
-            axis.set_xlabel(x)
-
-
-def head(figure: Figure, title: str, axes: Sequence[Axes]) -> None:
-    """Title, and below it one legend for all panels, clear of every line."""
-    entries: dict[str, Any] = {}
-    for axis in axes:
-        for handle, label in zip(*axis.get_legend_handles_labels(), strict=True):
-            entries.setdefault(label, handle)
-    width = figure.get_figwidth()
-    figure.legend(
-        list(entries.values()),
-        list(entries),
-        title=textwrap.fill(title, int(13 * width)),
-        loc="outside upper left",
-        ncols=max(1, min(len(entries), int(width / 1.3))),
-        alignment="left",
-        frameon=False,
-        fontsize=8,
-        title_fontsize=10,
-    )
-
-
-def save(figure: Figure, path: Path) -> None:
-    """Write as PNG."""
-    with replacing(path) as temporary:
-        figure.savefig(temporary, format="png", dpi=160)
-
-
-def colours_of(methods: Sequence[str]) -> dict[str, str]:
-    """A colour for each of up to ten methods, the same in every figure of a run; usual ones keep theirs."""
-    palette = list(dict.fromkeys((*_COLOURS.values(), *_MORE)))
-    found: dict[str, str] = {}
-    for method in sorted(methods, key=lambda name: name not in _COLOURS):
-        usual = _COLOURS.get(method)
-        left = [colour for colour in palette if colour not in found.values()] or palette
-        found[method] = usual if usual in left else left[0]
-    return found
-
-
-def widths_of(methods: Sequence[str]) -> dict[str, float]:
-    """Line widths: wider what is drawn first, so that it shows on both sides of whatever repeats it."""
-    step = min(0.9, 3 / len(methods))
-    return {method: 1.1 + step * later for later, method in enumerate(reversed(list(methods)))}
-
-
-def label_of(method: str) -> str:
-    """A method's name in legends."""
-    return _LABELS.get(method, method)
-
-
-def _entitle(axis: Axes, text: str) -> None:
-    axis.set_title(text, loc="left", fontsize=9)
 
 
 def _walk(result: Result) -> str:
@@ -172,10 +61,10 @@ def maps(results: Sequence[Result], title: str | None = None) -> Figure:
             axis.plot(*row.estimate.T, color=colours[name], lw=widths[name], label=label_of(name))
             axis.plot(*row.estimate[-1], "o", color=colours[name], ms=4)
         truth = result.walk.footfalls.position[:, :2]
-        axis.plot(*truth.T, color=_TRUTH, lw=2.2, alpha=0.45, label="truth", zorder=1)
-        axis.plot(*truth[0], "^", color=_TRUTH, ms=6, ls="", label="start")
+        axis.plot(*truth.T, color=TRUTH, lw=2.2, alpha=0.45, label="truth", zorder=1)
+        axis.plot(*truth[0], "^", color=TRUTH, ms=6, ls="", label="start")
         axis.set_aspect("equal", adjustable="datalim")
-        _entitle(axis, _walk(result))
+        entitle(axis, _walk(result))
     label_edges(axes, "x (m)", "y (m)")
     head(figure, title or _named(results, "tracks"), axes)
     return figure
@@ -193,10 +82,10 @@ def heading_errors(results: Sequence[Result]) -> Figure:
             minutes, error = (row.t - row.t[0]) / 60, np.degrees(row.heading_error)
             axis.plot(minutes, error, color=colours[name], alpha=1 - 0.6 * i / max(len(results), 2), lw=1.2)
             ends.append((float(minutes[-1]), float(error[-1])))
-        axis.axhline(0, color=_TRUTH, lw=0.8)
+        axis.axhline(0, color=TRUTH, lw=0.8)
         if len(results) > 1:
             _number(axis, ends, [result.trial.number + 1 for result in results])
-        _entitle(axis, label_of(name))
+        entitle(axis, label_of(name))
     label_edges(axes, "time walked (min)", "heading error (deg)")
     numbers = " (numbers: walks)" if len(results) > 1 else ""
     head(figure, _named(results, f"heading error, estimate - truth{numbers}"), axes)
@@ -244,7 +133,7 @@ def drift_budget(results: Sequence[Result]) -> Figure:
     peak = {cause: max(np.abs(heading[cause]).max() for heading in headings) for cause in headings[0]}
     ranked = sorted(peak, key=lambda cause: -peak[cause])
     shown = [cause for cause in ranked if peak[cause] > _SHOWN_SHARE * peak[ranked[0]]]
-    colours = {cause: _CAUSES.get(cause, _MORE[i % len(_MORE)]) for i, cause in enumerate(shown)}
+    colours = {cause: _CAUSES.get(cause, MORE[i % len(MORE)]) for i, cause in enumerate(shown)}
     for axis, result, heading in zip(axes, results, headings, strict=True):
         budget = result.budget
         minutes = (budget.t - (budget.t[0] - budget.interval[0])) / 60
@@ -254,9 +143,9 @@ def drift_budget(results: Sequence[Result]) -> Figure:
         if np.any(pooled):
             axis.plot(minutes, pooled, color="#bbbbbb", lw=1.0, label="all others")
         total = np.degrees(np.cumsum(budget.total * budget.interval))
-        axis.plot(minutes, total, color=_TRUTH, lw=1.8, label="sum")
-        axis.axhline(0, color=_TRUTH, lw=0.6)
-        _entitle(axis, _walk(result))
+        axis.plot(minutes, total, color=TRUTH, lw=1.8, label="sum")
+        axis.axhline(0, color=TRUTH, lw=0.6)
+        entitle(axis, _walk(result))
     label_edges(axes, "time walked (min)", "heading error (deg)")
     head(figure, _named(results, "uncorrected heading error by cause"), axes)
     return figure
@@ -278,7 +167,7 @@ def filtered_rates(results: Sequence[Result], method: str = "hdr", count: int = 
         ("rate_twice", "twice filtered", "#1f6fb4", 2.0),
     ):
         axis.plot(number, np.degrees(evidence[key][number]), color=colour, lw=width, label=label)
-    axis.axhline(0, color=_TRUTH, lw=0.8)
+    axis.axhline(0, color=TRUTH, lw=0.8)
     label_edges([axis], "footfall", "rate of turn (deg/s)")
     title = f"rate of turn over the straightest {count} footfalls of walk {results[0].trial.number + 1}"
     head(figure, _named(results, title), [axis])
@@ -304,15 +193,15 @@ def controller(results: Sequence[Result], method: str = "hdr") -> Figure:
         track, budget = result.tracks[method], result.budget
         began = track.t[0]
         drift = _smooth(np.degrees(budget.total))
-        axis.plot((budget.t - began) / 60, drift, color=_TRUTH, lw=1.6, alpha=0.55, label="true drift")
+        axis.plot((budget.t - began) / 60, drift, color=TRUTH, lw=1.6, alpha=0.55, label="true drift")
         minutes = (track.t - began) / 60
         integrator = -np.degrees(track.evidence["integrator"])
-        axis.plot(minutes, integrator, color=_COLOURS["hdr"], lw=1.2, label="-I of HDR")
+        axis.plot(minutes, integrator, color=COLOURS["hdr"], lw=1.2, label="-I of HDR")
         idle = track.evidence["attenuator"] <= 0
         limits = axis.get_ylim()
         axis.fill_between(minutes, *limits, where=idle, color="#bbbbbb", alpha=0.35, lw=0, label="A = 0")
         axis.set_ylim(limits)
-        _entitle(axis, _walk(result))
+        entitle(axis, _walk(result))
     label_edges(axes, "time walked (min)", "deg/s")
     head(figure, _named(results, "what HDR takes for drift, and the true drift (mean of 25 strides)"), axes)
     return figure

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from footfall.scenarios.judge.score import compare
-from footfall.scenarios.report.figures import (
+from footfall.scenarios.report.style import (
     colours_of,
     head,
     label_edges,

@@ -1,9 +1,9 @@
-"""What a run says: tables for people, one JSON document for programs."""
+"""Tables for people: what a run says, and a score."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.box import SIMPLE_HEAD
@@ -14,92 +14,17 @@ from rich.text import Text
 from footfall.scenarios.judge.papers import HDR_TABLE_2, HDR_TABLE_2_MEAN, IHDE_TABLE_2, range_text
 from footfall.scenarios.judge.reference import ClosureScore, FootprintScore
 from footfall.scenarios.judge.score import Align, Score, improvement, mean_score
-from footfall.scenarios.judge.statistics import extent, spread
-from footfall.simulate.plan import versions
+from footfall.scenarios.judge.statistics import spread
+from footfall.scenarios.report.document import ERRORS, distance_m, extents, mean_by_noise, scores_by_method
 
 if TYPE_CHECKING:
     from footfall.scenarios.path import Path
     from footfall.scenarios.run import Result
 
-_ERRORS = ("heading_error_final_deg", "heading_error_mean_deg")
-
-
-def scores_by_method(rows: Sequence[Mapping[str, Score]]) -> dict[str, list[Score]]:
-    """Method -> its score in each row."""
-    return {name: [row[name] for row in rows] for name in rows[0]} if rows else {}
-
-
-def as_json(scenario: str, results: Sequence[Result]) -> dict[str, Any]:
-    """The document of `run --json` (docs/scores.md)."""
-    document: dict[str, Any] = {
-        "scenario": scenario,
-        "distance_m": float(np.mean([_distance(result) for result in results])),
-        "duration_s": float(np.mean([_duration(result) for result in results])),
-        "versions": versions(),
-        "walks": [
-            {
-                "seed": result.trial.walk_seed,
-                "imu": result.trial.setup.imu,
-                "unit": result.trial.unit_seed,
-                "noise": result.trial.noise_seed,
-                "subject": result.walk.meta["subject"],
-                "footfalls": len(next(iter(result.tracks.values()))),
-                "methods": {name: score.as_dict() for name, score in result.scores.items()},
-                **_noises_document(result.noises),
-            }
-            for result in results
-        ],
-        "mean": {
-            name: mean_score(scores).as_dict()
-            for name, scores in scores_by_method([result.scores for result in results]).items()
-        },
-    }
-    document |= _noises_document(_mean_by_noise(results))
-    others = scores_by_method([row for result in results for row in result.others])
-    if others:
-        document["other_units"] = {
-            "count": len(next(iter(others.values()))),
-            "methods": {
-                name: {key: spread([getattr(score, key) for score in scores]) for key in _ERRORS}
-                for name, scores in others.items()
-            },
-        }
-    return document
-
-
-def _mean_by_noise(results: Sequence[Result]) -> list[dict[str, Score]]:
-    """For each further noise of the walks' own units: method -> mean over the walks."""
-    rounds = zip(*(result.noises for result in results), strict=True)
-    return [
-        {name: mean_score(scores) for name, scores in scores_by_method(round_).items()} for round_ in rounds
-    ]
-
-
-def _extents(rows: Sequence[Mapping[str, Score]]) -> dict[str, dict[str, dict[str, float]]]:
-    """Method -> heading error -> its extent over `rows`."""
-    return {
-        name: {key: extent([getattr(score, key) for score in scores]) for key in _ERRORS}
-        for name, scores in scores_by_method(rows).items()
-    }
-
-
-def _noises_document(rows: Sequence[Mapping[str, Score]]) -> dict[str, Any]:
-    return {"other_noises": {"count": len(rows), "methods": _extents(rows)}} if rows else {}
-
-
-def _distance(result: Result) -> float:
-    """Horizontal distance between the true footfalls, summed (m)."""
-    return float(np.hypot(*np.diff(result.walk.footfalls.position[:, :2], axis=0).T).sum())
-
-
-def _duration(result: Result) -> float:
-    """Seconds walked, without the motionless start."""
-    return float(result.walk.footfalls.t[-1] - result.walk.footfalls.t[0])
-
 
 def run_report(name: str, results: Sequence[Result]) -> list[RenderableType]:
     """What a run of the scenario `name` prints for people."""
-    own, distance = results[0].trial, np.mean([_distance(result) for result in results])
+    own, distance = results[0].trial, np.mean([distance_m(result) for result in results])
     first = own.setup
     count = "1 walk" if len(results) == 1 else f"{len(results)} walks"
     parts: list[RenderableType] = [
@@ -200,7 +125,7 @@ def ihde_table(name: str, results: Sequence[Result]) -> Group:
 
 def noises_table(results: Sequence[Result]) -> Group | None:
     """What other noises make of the same walks and units, and of their mean; None when there are none."""
-    means = _mean_by_noise(results)
+    means = mean_by_noise(results)
     if not means:
         return None
     table = new_table(
@@ -208,7 +133,7 @@ def noises_table(results: Sequence[Result]) -> Group | None:
     )
     walks = [(str(result.trial.number + 1), result.noises) for result in results]
     for walk, rows in [*walks, ("mean", means)]:
-        for name, errors in _extents(rows).items():
+        for name, errors in extents(rows).items():
             cells = []
             for found in errors.values():
                 cells += [f"{found['median']:.1f}", f"{found['smallest']:.1f} to {found['largest']:.1f}"]
@@ -226,7 +151,7 @@ def others_table(results: Sequence[Result]) -> Group | None:
     table = new_table("", *columns)
     for name, scores in others.items():
         cells = []
-        for key in _ERRORS:
+        for key in ERRORS:
             cells += [f"{value:.1f}" for value in spread([getattr(score, key) for score in scores]).values()]
         table.add_row(name, *cells)
     return titled(

@@ -11,8 +11,9 @@ from rich.console import Console
 
 from footfall.scenarios.judge.papers import IHDE_TABLE_2, range_text
 from footfall.scenarios.judge.score import Score
-from footfall.scenarios.report.figures import colours_of, heading_errors, maps
+from footfall.scenarios.report.figures import heading_errors, maps
 from footfall.scenarios.report.heading_figures import evaluation, heading_figures, judging
+from footfall.scenarios.report.style import colours_of
 from footfall.scenarios.report.tables import run_report
 from footfall.scenarios.run import parts, perform_run
 from footfall.scenarios.scenario import load_scenario

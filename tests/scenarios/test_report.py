@@ -14,7 +14,8 @@ from footfall.scenarios.judge.papers import HDR_TABLE_2, HDR_TABLE_2_MEAN
 from footfall.scenarios.judge.score import Score, mean_score
 from footfall.scenarios.judge.statistics import extent, spread
 from footfall.scenarios.report import figures
-from footfall.scenarios.report.tables import as_json, paper_table, path_line, run_report
+from footfall.scenarios.report.document import run_document
+from footfall.scenarios.report.tables import paper_table, path_line, run_report
 from footfall.scenarios.run import parts, perform_run
 from footfall.scenarios.scenario import build_scenario, load_scenario
 from footfall.scenarios.trial import setup
@@ -102,7 +103,7 @@ def test_an_improvement_is_the_ratio_of_the_errors_and_of_the_means(walked):
 def test_a_flawless_method_breaks_no_table(walked):
     results = several(walked, 2, factor=0.0)
     assert "nan" not in printed(*run_report("short", results))
-    json.dumps(as_json("short", results), allow_nan=False)
+    json.dumps(run_document("short", results), allow_nan=False)
 
 
 def test_other_noises_are_told_by_walk_and_of_the_mean(walked):
@@ -120,7 +121,7 @@ def test_other_noises_are_told_by_walk_and_of_the_mean(walked):
     }.items():
         expected = [f"{median}", f"{low}", "to", f"{high}"] * 2
         assert found[walk, "pdr"] == found[walk, "hdr"] == expected
-    document = json.loads(json.dumps(as_json("short", results), allow_nan=False))
+    document = json.loads(json.dumps(run_document("short", results), allow_nan=False))
     key = "heading_error_final_deg"
     assert document["walks"][1]["other_noises"]["count"] == document["other_noises"]["count"] == 3
     assert document["walks"][1]["other_noises"]["methods"]["hdr"][key] == extent([20.0, 29.0, 41.0])
@@ -128,7 +129,7 @@ def test_other_noises_are_told_by_walk_and_of_the_mean(walked):
     assert document["walks"][1]["noise"] == results[1].trial.noise_seed
     silent = [replace(result, noises=()) for result in results]
     assert "other noises" not in printed(*run_report("short", silent))
-    assert "other_noises" not in json.dumps(as_json("short", silent))
+    assert "other_noises" not in json.dumps(run_document("short", silent))
 
 
 def test_the_papers_table_is_printed_for_its_own_walk_alone(walked):
@@ -152,7 +153,7 @@ def test_chosen_units_are_owned_up_to(walked):
 
 def test_the_document_holds_every_walk_and_the_means(walked):
     results = several(walked, 3)
-    document = json.loads(json.dumps(as_json("short", results), allow_nan=False))
+    document = json.loads(json.dumps(run_document("short", results), allow_nan=False))
     assert [row["unit"] for row in document["walks"]] == [1000, 1001, 1002]
     for row, result in zip(document["walks"], results, strict=True):
         assert row["seed"] == result.trial.walk_seed
@@ -163,7 +164,7 @@ def test_the_document_holds_every_walk_and_the_means(walked):
     assert document["other_units"]["count"] == 3
     errors = [result.others[0]["hdr"].heading_error_mean_deg for result in results]
     assert document["other_units"]["methods"]["hdr"]["heading_error_mean_deg"] == spread(errors)
-    assert "other_units" not in as_json("short", [replace(result, others=()) for result in results])
+    assert "other_units" not in run_document("short", [replace(result, others=()) for result in results])
 
 
 @given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=30))
