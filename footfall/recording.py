@@ -10,21 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from footfall.columns import ACCEL, GYRO, POSITION, QUATERNION, RECORDING
 from footfall.errors import InputError
 from footfall.identity import content_digest
 from footfall.tables import read_table, require_columns, write_table
-
-GYRO = ("gyro_x", "gyro_y", "gyro_z")
-ACCEL = ("accel_x", "accel_y", "accel_z")
-UNITS = {
-    "t": "s",
-    **dict.fromkeys(GYRO, "rad/s"),
-    **dict.fromkeys(ACCEL, "m/s2"),
-    "temperature": "degC",
-}
-
-
-_TRUTH = {"px", "py", "pz", "qw", "qx", "qy", "qz"}
 
 
 @dataclass(frozen=True)
@@ -101,12 +90,12 @@ def write_recording(recording: Recording, path: str | os.PathLike[str]) -> None:
     columns |= {name: recording.accel[:, i] for i, name in enumerate(ACCEL)}
     if recording.temperature is not None:
         columns["temperature"] = recording.temperature
-    write_table(path, columns, UNITS, recording.meta)
+    write_table(path, columns, RECORDING, recording.meta)
 
 
 def is_truth(names: Iterable[str]) -> bool:
     """Whether columns of these names hold the poses of a walk."""
-    return set(names) >= _TRUTH
+    return set(names) >= {*POSITION, *QUATERNION}
 
 
 def refuse_truth(path: str | os.PathLike[str], names: Iterable[str]) -> None:

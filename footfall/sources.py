@@ -26,6 +26,7 @@ STAGES = {
 # What is imported and changes no number: messages, the format of files, what is only seen, and this file.
 NO_PART = frozenset(
     {
+        "footfall.columns",
         "footfall.errors",
         "footfall.late",
         "footfall.models.appearance",

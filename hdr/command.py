@@ -18,6 +18,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from footfall.columns import ACCEL, GYRO
 from footfall.errors import InputError
 from footfall.hdr.method import Method, require_name
 from footfall.hdr.sound import require_sound
@@ -25,7 +26,7 @@ from footfall.hdr.tracks import Reckoning
 from footfall.identity import plain
 from footfall.late import late
 from footfall.pdr.track import Track, read_track
-from footfall.recording import ACCEL, GYRO, Recording, write_recording
+from footfall.recording import Recording, write_recording
 
 pa, pa_csv = late("pyarrow"), late("pyarrow.csv")
 

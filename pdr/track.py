@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from footfall.columns import TRACK
 from footfall.errors import InputError
 from footfall.tables import read_table, require_columns, write_table
-
-UNITS = {"t": "s", "x": "m", "y": "m", "z": "m", "heading": "rad"}
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ def write_track(track: Track, path: str | os.PathLike[str]) -> None:
     """Write `track` to Parquet: t, x, y, z, heading and the evidence."""
     columns = {"t": track.t} | {axis: track.position[:, i] for i, axis in enumerate("xyz")}
     columns |= {"heading": track.heading, **track.evidence}
-    write_table(path, columns, UNITS | dict(track.units), track.meta)
+    write_table(path, columns, {**TRACK, **track.units}, track.meta)
 
 
 def read_track(path: str | os.PathLike[str]) -> Track:
@@ -56,15 +55,15 @@ def read_track(path: str | os.PathLike[str]) -> Track:
         Missing columns, no rows, NaN, or stamps that do not increase.
     """
     columns, meta = read_table(path)
-    require_columns(str(path), columns, tuple(UNITS))
-    for name in UNITS:
+    require_columns(str(path), columns, tuple(TRACK))
+    for name in TRACK:
         if not np.isfinite(columns[name]).all():
             row = int(np.argmin(np.isfinite(columns[name])))
             raise InputError(f"{name} is not finite at row {row}", path)
     t = np.asarray(columns["t"], dtype=float)
     if len(t) < 2 or (np.diff(t) <= 0).any():
         raise InputError("a track needs at least two rows with increasing t", path)
-    evidence = {name: values for name, values in columns.items() if name not in UNITS}
+    evidence = {name: values for name, values in columns.items() if name not in TRACK}
     return Track(
         t=t,
         position=np.column_stack([columns[axis] for axis in "xyz"]).astype(float),

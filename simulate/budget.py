@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from footfall.columns import BUDGET, CAUSE
 from footfall.errors import InputError
 from footfall.late import late
 from footfall.simulate.walk import Walk
@@ -85,5 +86,4 @@ def drift_budget(walk: Walk, signals: Iterable[tuple[str, np.ndarray]], bias_tim
 def write_budget(budget: DriftBudget, path: str | os.PathLike[str], meta: Mapping[str, Any]) -> None:
     """Write the budget to Parquet: t, interval, one column a cause, total."""
     columns = {"t": budget.t, "interval": budget.interval, **budget.causes, "total": budget.total}
-    units = dict.fromkeys(columns, "rad/s") | {"t": "s", "interval": "s"}
-    write_table(path, columns, units, meta)
+    write_table(path, columns, {**dict.fromkeys(budget.causes, CAUSE), **BUDGET}, meta)

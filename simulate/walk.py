@@ -11,25 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from footfall.columns import ACCEL, FOOTFALLS, GYRO, PLACE, POSITION, QUATERNION, VELOCITY, WALK
 from footfall.conventions import heading_of
 from footfall.errors import InputError
 from footfall.identity import content_digest
 from footfall.tables import Columns, read_table, require_columns, write_table
 
-POSE = ("px", "py", "pz", "qw", "qx", "qy", "qz", "vx", "vy", "vz")
-GYRO = ("gyro_x", "gyro_y", "gyro_z")
-ACCEL = ("accel_x", "accel_y", "accel_z")
-UNITS = {
-    "t": "s",
-    **dict.fromkeys(("px", "py", "pz"), "m"),
-    **dict.fromkeys(("qw", "qx", "qy", "qz"), ""),
-    **dict.fromkeys(("vx", "vy", "vz"), "m/s"),
-    **dict.fromkeys(GYRO, "rad/s"),
-    **dict.fromkeys(ACCEL, "m/s2"),
-    "contact": "body weight",
-    "stance": "",
-}
-FOOTFALL_UNITS = {"t": "s", "x": "m", "y": "m", "z": "m", "heading": "rad"}
+POSE = (*POSITION, *QUATERNION, *VELOCITY)
 
 
 @dataclass(frozen=True)
@@ -121,12 +109,12 @@ def write_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
         "heading": f.heading,
     }
     # The footfalls first: whoever finds the walk finds them too.
-    write_table(footfalls_path(path), columns, FOOTFALL_UNITS, walk.meta)
+    write_table(footfalls_path(path), columns, FOOTFALLS, walk.meta)
     pose = np.column_stack([walk.position, walk.quaternion, walk.velocity])
     columns = {"t": walk.t} | dict(zip(POSE, pose.T, strict=True))
     columns |= dict(zip(GYRO, walk.gyro.T, strict=True)) | dict(zip(ACCEL, walk.accel.T, strict=True))
     columns |= {"contact": walk.contact, "stance": walk.stance}
-    write_table(path, columns, UNITS, walk.meta, smooth=True)
+    write_table(path, columns, WALK, walk.meta, smooth=True)
 
 
 def read_walk(path: str | os.PathLike[str]) -> Walk:
@@ -138,22 +126,20 @@ def read_walk(path: str | os.PathLike[str]) -> Walk:
         Missing file, columns or footfalls; values that are not finite; times that do not increase.
     """
     columns, meta = read_table(path)
-    _require_rows(path, columns, ("t", *POSE, *GYRO, *ACCEL, "contact", "stance"))
+    _require_rows(path, columns, tuple(WALK))
     beside = footfalls_path(path)
     falls, _ = read_table(beside)
-    _require_rows(beside, falls, tuple(FOOTFALL_UNITS))
+    _require_rows(beside, falls, tuple(FOOTFALLS))
     return Walk(
         t=columns["t"],
-        position=_stack(columns, POSE[:3]),
-        quaternion=_stack(columns, POSE[3:7]),
-        velocity=_stack(columns, POSE[7:]),
+        position=_stack(columns, POSITION),
+        quaternion=_stack(columns, QUATERNION),
+        velocity=_stack(columns, VELOCITY),
         gyro=_stack(columns, GYRO),
         accel=_stack(columns, ACCEL),
         contact=columns["contact"],
         stance=columns["stance"].astype(bool),
-        footfalls=TrueFootfalls(
-            t=falls["t"], position=_stack(falls, ("x", "y", "z")), heading=falls["heading"]
-        ),
+        footfalls=TrueFootfalls(t=falls["t"], position=_stack(falls, PLACE), heading=falls["heading"]),
         meta=meta,
     )
 

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from footfall.recording import ACCEL, GYRO
+from footfall.columns import ACCEL, GYRO
 from footfall.tracking import track
 from tests.helpers.synthetic_foot import walk
 

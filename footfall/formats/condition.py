@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from footfall.columns import ACCEL, GYRO
 from footfall.errors import InputError
 from footfall.formats.clipping import clipped_runs, restored
 from footfall.formats.samples import Samples
-from footfall.recording import ACCEL, GYRO
 
 FILL_S = 0.25  # the longest hole that is filled: dead reckoning refuses longer ones
 JITTER = 0.1  # of an interval; stamps that scatter more are not evenly spaced

@@ -6,9 +6,9 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from footfall.columns import ACCEL, GYRO
 from footfall.conventions import GRAVITY
 from footfall.formats.units import DEG, unit_size
-from footfall.recording import ACCEL, GYRO
 
 AXES = "xyz"
 CHANNELS = ("t", *GYRO, *ACCEL, "temperature")

@@ -8,11 +8,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from footfall.columns import GYRO
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
 from footfall.pdr.stance import moving_mean
 from footfall.pdr.strapdown import integrate
-from footfall.recording import GYRO, Recording
+from footfall.recording import Recording
 
 GRAVITY_TOLERANCE = 1.0  # m/s2, of the force at rest
 MISCLOSURE = (0.04, 0.16)  # g: above the first a cause is sought, above the second none need be found

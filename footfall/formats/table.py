@@ -12,11 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from footfall.columns import ACCEL, GYRO
 from footfall.errors import InputError
 from footfall.formats.layout import LAYOUTS, Layout
 from footfall.formats.samples import TORN, Samples, Source
 from footfall.late import late
-from footfall.recording import ACCEL, GYRO, refuse_truth
+from footfall.recording import refuse_truth
 from footfall.tables import META_KEY, numbers
 
 pa, pa_csv, pq = late("pyarrow"), late("pyarrow.csv"), late("pyarrow.parquet")

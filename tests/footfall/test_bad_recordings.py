@@ -6,10 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
 
+from footfall.columns import ACCEL, GYRO
 from footfall.errors import InputError
 from footfall.formats import read
 from footfall.pdr.track import read_track
-from footfall.recording import ACCEL, GYRO, Recording, write_recording
+from footfall.recording import Recording, write_recording
 from tests.footfall.test_formats import openshoe_lines
 from tests.helpers.commands import expect_one_sentence, write_csv
 from tests.helpers.synthetic_foot import walk

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
 
+from footfall.columns import ACCEL, GYRO
 from footfall.errors import InputError
 from footfall.formats import open_source
 from footfall.pdr import stream
@@ -19,7 +20,7 @@ from footfall.pdr.detectors import DETECTORS
 from footfall.pdr.reckoning import PdrParams, StartPose, dead_reckon
 from footfall.pdr.rest import still_time
 from footfall.pdr.stream import dead_reckon_blocks
-from footfall.recording import ACCEL, GYRO, Recording, write_recording
+from footfall.recording import Recording, write_recording
 from footfall.tracking import track
 from tests.helpers.synthetic_foot import walk
 
