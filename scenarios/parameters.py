@@ -303,10 +303,11 @@ def parameters(base: Documents) -> Iterator[Parameter]:
     """Every address with what stands there now."""
     for key in keys(ScenarioFile):
         address = f"scenario.{key.address}"
-        if address in _NO_PARAMETERS or not there(base.scenario.table, key.address):
+        table = _opened_subjects(base.scenario.table, key.address)
+        if address in _NO_PARAMETERS or not there(table, key.address):
             continue
         stage = next((stage for head, stage in _LATER.items() if address.startswith(head)), "walk")
-        now = _now(base.scenario.table, key.address, key.default)
+        now = _now(table, key.address, key.default)
         yield Parameter(address, key.type, _unit_of(address), now, key.bounds, stage)
     for key in keys(ImuSheet):
         address = f"imu.{key.address}"
@@ -343,8 +344,6 @@ def _now(table: Mapping[str, Any], address: str, default: Any) -> Any:
     for part in parse(address):
         below = []
         for one in found:
-            if isinstance(one, str) and one in SUBJECTS:
-                one = _as_table(one)
             if isinstance(one, dict) and part.name in one:
                 value = one[part.name]
                 if part.which is None:

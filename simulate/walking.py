@@ -12,9 +12,8 @@ import numpy as np
 
 from footfall.conventions import GRAVITY, heading_of
 from footfall.models import body
-from footfall.models.body import Ground
 from footfall.models.policy import Policy, stock_policy
-from footfall.models.route import Route
+from footfall.models.route import Ground, Route
 from footfall.runs import runs
 from footfall.simulate.episode import STAND_S, Episode, FallError, planned_pushes, stroll
 from footfall.simulate.identity import walk_identity

@@ -1,10 +1,12 @@
 """Addresses: what is listed can be set, a value repeats the stage that it says, a mistake is one sentence."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from footfall.addresses import pattern
 from footfall.errors import InputError
 from footfall.hdr.methods import METHODS
 from footfall.identity import digest_of
@@ -13,6 +15,7 @@ from footfall.models.imu.override import CONSTANTS, overridden
 from footfall.models.subject import SUBJECTS
 from footfall.scenarios.parameters import STAGES, documents, parameters, parsed, sensor, with_values
 from footfall.scenarios.scenario import stock_scenarios
+from tests.helpers.places import DOCS
 
 
 @pytest.fixture(scope="module")
@@ -222,3 +225,15 @@ def test_the_command_shows_and_the_options_take_them(cli, here):
     assert (code, out) == (2, "")
     assert "footfall record takes addresses of imu, unit alone" in err
     assert not (here / "rec3.parquet").exists()
+
+
+def test_the_page_names_addresses_that_exist_and_its_code_runs():
+    page = (DOCS / "parameters.md").read_text()
+    known = {pattern(one.address) for name in ("curving", "turning") for one in parameters(documents(name))}
+    known |= {pattern(one.address) for one in parameters(documents("ihde-test1", methods=METHODS))}
+    areas = "scenario|imu|unit|pdr|filter|hdr|ihde"
+    named = set(re.findall(rf"(?<![\w.])((?:{areas})(?:\.[a-z]\w*(?:\[[^\]]*\])?)+)(?=[=`\s])", page))
+    assert len(named) > 12
+    assert {one for one in named if pattern(one) not in known} == {"scenario.temperature"}  # a whole table
+    for block in re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL):
+        exec(block, {})
