@@ -65,15 +65,17 @@ def dead_reckon_blocks(
     if rest_time is not None:
         params = replace(params, bias_s=rest_time(held))
     rest = static_bias(held, params.bias_s)
-    walker = _Walker(params, rest, level_attitude(rest.force))
+    reckoner = _Reckoner(params, rest, level_attitude(rest.force))
     for block in waiting:
         held = _joined(held, block)
-        if len(held.t) - walker.looked > WORK_ROWS:
-            held = walker.take(held, last=False)
-    walker.take(held, last=True)
-    if len(walker.t) < 2:
+        if len(held.t) - reckoner.seen > WORK_ROWS:
+            held = reckoner.take(held, last=False)
+    reckoner.take(held, last=True)
+    if len(reckoner.t) < 2:
         raise InputError(f"no stride found after the {params.bias_s:g} s at rest", "recording")
-    footfalls = placed(np.array(walker.t), np.array(walker.quaternions), np.array(walker.positions), start)
+    footfalls = placed(
+        np.array(reckoner.t), np.array(reckoner.quaternions), np.array(reckoner.positions), start
+    )
     return footfalls, params.bias_s
 
 
@@ -98,7 +100,7 @@ def _joined(first: Recording, second: Recording) -> Recording:
 
 
 @dataclass
-class _Walker:
+class _Reckoner:
     """Where the walk has come to: attitude and position at the reset `carry` of the samples held."""
 
     params: PdrParams
@@ -106,7 +108,7 @@ class _Walker:
     quaternion: np.ndarray
     position: np.ndarray = field(default_factory=lambda: np.zeros(3))
     told: bool = False  # whether the reset at `carry` was a footfall, which is told once
-    looked: int = 0
+    seen: int = 0
     begun: bool = False
     t: list[float] = field(default_factory=list)
     quaternions: list[np.ndarray] = field(default_factory=list)
@@ -114,7 +116,7 @@ class _Walker:
 
     def take(self, held: Recording, last: bool) -> Recording:
         """Reckon as far as stances are certain; returns the samples that are still needed."""
-        self.looked = len(held.t)
+        self.seen = len(held.t)
         rest, params, t = self.rest, self.params, held.t
         carry = rest.last
         score = scores(held, rest, params.detector, still=0 if self.begun else carry)[1:]
@@ -145,7 +147,7 @@ class _Walker:
         )
         first = min(keep, int(resets[-1]))
         self.rest = replace(rest, last=int(resets[-1]) - first)
-        self.looked, self.begun = len(t) - first, True
+        self.seen, self.begun = len(t) - first, True
         return Recording(t=t[first:], gyro=held.gyro[first:], accel=held.accel[first:])
 
     def _cut(self, t: np.ndarray, score: np.ndarray) -> tuple[int | None, int]:

@@ -11,7 +11,7 @@ from footfall.conventions import GRAVITY
 from footfall.pdr.gait.strides import QUIET_S, RATE_HZ, STILL_RATE, Foot, Stride
 
 FEWEST = 8  # strides that a standard deviation is taken of
-PUSH_S = 0.20  # before the peak of the pitch rate: the acceleration of push-off lies within
+PUSH_OFF_S = 0.20  # before the peak of the pitch rate: the acceleration of push-off lies within
 SIGNALS = ("gyro x", "gyro y", "gyro z", "gyro norm", "accel x", "accel y", "accel z", "accel norm")
 
 
@@ -68,7 +68,7 @@ def stride_figures(foot: Foot, stride: Stride) -> dict[str, float]:
     quarter = (still.stop - still.start) // 4
     middle = slice(still.start + quarter, still.stop - quarter)
     quiet = quietest(rate[cycle], still)
-    push, swing = stride.push - begin, stride.swing - begin
+    push_off, swing = stride.push_off - begin, stride.swing - begin
     landing = swing + int(np.argmax(gyro[swing:, 1] > 0))
     lean = np.degrees(np.arcsin(np.clip(stride.up[:, 0], -1, 1)))
 
@@ -79,7 +79,7 @@ def stride_figures(foot: Foot, stride: Stride) -> dict[str, float]:
         "stride_s": stride.duration,
         "stride_m": float(np.hypot(*stride.step[:2])),
         "still_pct": percent(still.stop - still.start),
-        "push_off_deg_s": float(np.degrees(gyro[push, 1])),
+        "push_off_deg_s": float(np.degrees(gyro[push_off, 1])),
         "swing_deg_s": float(-np.degrees(gyro[swing, 1])),
         "swing_peak_pct": percent(stride.swing - stride.crossing),
         "landing_pct": percent(begin + landing - stride.crossing),
@@ -90,7 +90,7 @@ def stride_figures(foot: Foot, stride: Stride) -> dict[str, float]:
         "heel_strike_m_s2": float(force[swing:].max()),
         "heel_strike_x_m_s2": float(accel[swing:, 0].max()),
         "heel_strike_z_m_s2": float(accel[swing:, 2].max()),
-        "push_off_m_s2": float(force[max(push - round(PUSH_S * RATE_HZ), 0) : swing].max()),
+        "push_off_m_s2": float(force[max(push_off - round(PUSH_OFF_S * RATE_HZ), 0) : swing].max()),
         "mid_gyro_sd_deg_s": float(np.degrees(per_axis_sd(gyro[middle]))),
         "mid_accel_sd_m_s2": per_axis_sd(accel[middle]),
         "mid_gyro_deg_s": float(np.degrees(_mean(rate[middle]))),

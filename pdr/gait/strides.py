@@ -56,7 +56,7 @@ class Stride:
     ----------
     first, last : rows of the two middles
     crossing : row (not whole) at which the pitch rate changes from push-off to swing
-    push, swing : rows of the two peaks of the pitch rate
+    push_off, swing : rows of the two peaks of the pitch rate
     duration : s, from the last stride's crossing to this one's; nan where that one is missing
     turn : rad, change of the foot's heading
     step : (3,) m, displacement in the foot's frame at `first`, levelled: forward, left, up
@@ -66,7 +66,7 @@ class Stride:
     first: int
     last: int
     crossing: float
-    push: int
+    push_off: int
     swing: int
     duration: float
     turn: float
@@ -170,8 +170,8 @@ def stride_of(signals: Signals, first: int, last: int) -> Stride:
     gyro, accel = signals.gyro[first : last + 1], signals.accel[first : last + 1]
     pitch = gyro[:, 1]
     swing = int(np.argmin(pitch))
-    push = int(np.argmax(pitch[: swing + 1]))
-    before = push + int(np.flatnonzero(pitch[push : swing + 1] > 0)[-1])
+    push_off = int(np.argmax(pitch[: swing + 1]))
+    before = push_off + int(np.flatnonzero(pitch[push_off : swing + 1] > 0)[-1])
     crossing = first + before + pitch[before] / (pitch[before] - pitch[before + 1])
 
     t = np.arange(len(gyro)) / RATE_HZ
@@ -191,7 +191,7 @@ def stride_of(signals: Signals, first: int, last: int) -> Stride:
         first=first,
         last=last,
         crossing=crossing,
-        push=first + push,
+        push_off=first + push_off,
         swing=first + swing,
         duration=np.nan,
         turn=float(np.arctan2(ahead[1], ahead[0])),

@@ -83,7 +83,7 @@ def test_a_hard_foot_slap_does_not_turn_the_foot_round(foot):
     for stride in foot.strides:
         slap = stride.swing + np.argmax(foot.signals.gyro[stride.swing : stride.last, 1])
         gyro[:, 1] += 8.0 * np.exp(-0.5 * ((rows - slap) / 2) ** 2)
-        assert gyro[slap, 1] > foot.signals.gyro[stride.push, 1]
+        assert gyro[slap, 1] > foot.signals.gyro[stride.push_off, 1]
     found = aligned(replace(foot.signals, gyro=gyro))
     assert np.corrcoef(found.gyro[:, 1], gyro[:, 1])[0, 1] > 0.99
 
@@ -93,7 +93,7 @@ def test_the_foots_axes_are_up_left_and_forward(foot):
     middle = [stride.last for stride in foot.strides]
     assert np.abs(np.median(foot.signals.accel[middle], axis=0) - [0, 0, GRAVITY]).max() < 0.7
     for stride in foot.strides:
-        assert foot.signals.gyro[stride.push, 1] > 4 > -4 > foot.signals.gyro[stride.swing, 1]
+        assert foot.signals.gyro[stride.push_off, 1] > 4 > -4 > foot.signals.gyro[stride.swing, 1]
         assert stride.step[0] > 1.0 > abs(stride.step[1])
 
 
@@ -166,7 +166,7 @@ def test_stance_yaw_is_the_foots_heading_about_its_path():
                 first=number,
                 last=number + 1,
                 crossing=0.0,
-                push=0,
+                push_off=0,
                 swing=0,
                 duration=1.0,
                 turn=other - one,
