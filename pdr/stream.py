@@ -71,12 +71,10 @@ def dead_reckon_blocks(
         if len(held.t) - reckoner.seen > WORK_ROWS:
             held = reckoner.take(held, last=False)
     reckoner.take(held, last=True)
-    if len(reckoner.t) < 2:
+    t, quaternion, position = map(np.concatenate, zip(*reckoner.made, strict=True))
+    if len(t) < 2:
         raise InputError(f"no stride found after the {params.bias_s:g} s at rest", "recording")
-    footfalls = placed(
-        np.array(reckoner.t), np.array(reckoner.quaternions), np.array(reckoner.positions), start
-    )
-    return footfalls, params.bias_s
+    return placed(t, quaternion, position, start), params.bias_s
 
 
 def _beginning(waiting: Iterator[Recording], bias_s: float) -> Recording:
@@ -101,7 +99,10 @@ def _joined(first: Recording, second: Recording) -> Recording:
 
 @dataclass
 class _Reckoner:
-    """Where the walk has come to: attitude and position at the reset `carry` of the samples held."""
+    """Where the walk has come to: attitude and position at the reset `carry` of the samples held.
+
+    `made` are the footfalls: time, attitude and position of those of each part.
+    """
 
     params: PdrParams
     rest: Rest
@@ -110,9 +111,7 @@ class _Reckoner:
     told: bool = False  # whether the reset at `carry` was a footfall, which is told once
     seen: int = 0
     begun: bool = False
-    t: list[float] = field(default_factory=list)
-    quaternions: list[np.ndarray] = field(default_factory=list)
-    positions: list[np.ndarray] = field(default_factory=list)
+    made: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = field(default_factory=list)
 
     def take(self, held: Recording, last: bool) -> Recording:
         """Reckon as far as stances are certain; returns the samples that are still needed."""
@@ -192,7 +191,5 @@ class _Reckoner:
             self.params.tilt_gain,
         )
         position = position + self.position
-        self.t += held.t[resets[footfalls]].tolist()
-        self.quaternions += list(quaternion[footfalls])
-        self.positions += list(position[footfalls])
+        self.made.append((held.t[resets[footfalls]], quaternion[footfalls], position[footfalls]))
         self.quaternion, self.position = quaternion[-1].copy(), position[-1].copy()

@@ -24,6 +24,7 @@ pa, pa_csv, pq = late("pyarrow"), late("pyarrow.csv"), late("pyarrow.parquet")
 
 BLOCK_BYTES = 1 << 22
 BLOCK_ROWS = 1 << 16
+PAGE_BYTES = 1 << 18
 _HEADER_BYTES = 1 << 16
 
 
@@ -169,7 +170,8 @@ def _ends_with(path: Path, text: str) -> bool:
 
 def _open_parquet(path: Path) -> tuple[Any, list[str]]:
     try:
-        file = pq.ParquetFile(path)
+        # Page by page: left to itself Arrow reads ahead, and holds what it has read to the end.
+        file = pq.ParquetFile(path, pre_buffer=False, buffer_size=PAGE_BYTES)
     except (pa.ArrowException, OSError) as error:
         raise InputError(f"not a readable Parquet file ({str(error).splitlines()[0]})", path) from None
     return file, list(file.schema_arrow.names)

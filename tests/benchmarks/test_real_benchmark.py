@@ -85,10 +85,12 @@ def test_an_empty_folder_is_told(tmp_path):
         real_recordings.main(["--data", str(tmp_path)])
 
 
-def test_a_long_recording_is_written_tracked_and_weighed(capsys):
-    long_recording.main(["--gigabytes", "0.003"])
-    first, second = capsys.readouterr().out.splitlines()
-    rows, strides, footfalls = (int(word) for word in first.split() if word.isdigit())
-    assert rows > 25_000
-    assert footfalls == strides + 11  # ten strides before, the stand after
-    assert "GiB" in second
+@pytest.mark.parametrize("format", ["parquet", "csv"])
+def test_a_long_recording_is_written_tracked_and_weighed(tmp_path, format):
+    out = tmp_path / "long.json"
+    long_recording.main(["--hours", "0.02", "--format", format, "--json", str(out)])
+    headings, nothing, row = json.loads(out.read_text())["long_recordings"]
+    told, bare = (dict(zip(headings, map(float, cells), strict=True)) for cells in (row, nothing))
+    assert told["footfalls"] == told["strides"] + long_recording.BEGIN == 76
+    assert told["rows"] > 0.02 * 3600 * long_recording.RATE
+    assert told["MiB"] >= bare["MiB"] > 50

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pa_csv
+import pyarrow.parquet as pq
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -135,8 +136,6 @@ def test_a_file_in_blocks_makes_the_track_of_the_whole_file(tmp_path_factory, wa
 
 def write_rows(file, recording, rows):
     """Parquet with these rows, doubles and all, which no recording could hold."""
-    import pyarrow.parquet as pq
-
     columns = {"t": recording.t[rows]}
     columns |= {name: recording.gyro[rows, i] for i, name in enumerate(GYRO)}
     columns |= {name: recording.accel[rows, i] for i, name in enumerate(ACCEL)}
@@ -193,3 +192,25 @@ def test_memory_does_not_grow_with_the_file(tmp_path, monkeypatch):
     assert (large - small) / (many - few) < 10
     monkeypatch.undo()
     assert peak(1200)[1] > 2 * large
+
+
+@pytest.mark.parametrize("rows_a_group", [1 << 14, 1 << 20])
+def test_parquet_is_read_page_by_page(tmp_path, rows_a_group):
+    """However it is divided: Arrow holds no more of a long file than of a short one."""
+    rng = np.random.default_rng(0)
+
+    def peak(rows):
+        table = {"t": np.arange(rows) / 200.0} | {name: rng.normal(size=rows) for name in (*GYRO, *ACCEL)}
+        pq.write_table(
+            pa.table(table), tmp_path / "a.parquet", row_group_size=rows_a_group, use_dictionary=False
+        )
+        table.clear()
+        before, most, read = pa.total_allocated_bytes(), 0, 0
+        for block in open_source(tmp_path / "a.parquet").blocks:
+            read += len(block)
+            most = max(most, pa.total_allocated_bytes() - before)
+        assert read == rows
+        return most
+
+    short, long = peak(100_000), peak(400_000)  # 5.6 MB and 22.4 MB
+    assert 0 < long < short + 2e6
