@@ -121,7 +121,7 @@ def test_ci_runs_the_readmes_test_line(checkout):
 
 
 PAGES = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md"]
-PAGES += sorted(str(file.relative_to(ROOT)) for file in ROOT.glob("docs/*.md"))
+PAGES += sorted(str(file.relative_to(ROOT)) for file in ROOT.glob("docs/**/*.md"))
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -135,8 +135,9 @@ def test_links_between_pages_lead_somewhere(checkout, page):
 
 def test_the_docs_map_names_every_page(checkout):
     index = (checkout / "docs" / "index.md").read_text()
-    pages = {file.name for file in (checkout / "docs").glob("*.md")} - {"index.md"}
-    assert pages == set(re.findall(r"\]\((\w+\.md)\)", index))
+    folder = checkout / "docs"
+    pages = {file.relative_to(folder).as_posix() for file in folder.rglob("*.md")} - {"index.md"}
+    assert pages == set(re.findall(r"\]\(([\w/-]+\.md)\)", index))
 
 
 def test_documented_keys_are_the_ones_that_exist(checkout):
