@@ -22,17 +22,6 @@ class Strict(BaseModel):
 Model = TypeVar("Model", bound=BaseModel)
 
 
-def read_toml(path: str | os.PathLike[str], model: type[Model]) -> Model:
-    """Read `path` as a `model`.
-
-    Raises
-    ------
-    InputError
-        No such file, not TOML, or the first key that the model refuses, with its value and the reason.
-    """
-    return checked(parse_toml(path), model, str(Path(path)))
-
-
 def parse_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
     """The content of a TOML file, unchecked.
 

@@ -83,7 +83,7 @@ def load_policy(path: str | Path) -> Policy:
                 raise ValueError(f"feedback gains {gains.shape}, expected {_GAINS}")
             meta = json.loads(str(data["meta"]))
     except (OSError, KeyError, ValueError) as error:
-        raise InputError(f"{source}: not a walker policy ({error})") from None
+        raise InputError(f"not a walker policy ({error})", source) from None
     return Policy(weights, biases, gains, hashlib.sha256(content).hexdigest()[:16], meta)
 
 

@@ -155,8 +155,8 @@ def _require_rows(path: str | os.PathLike[str], columns: Columns, names: tuple[s
     for name in names:
         if not np.isfinite(columns[name]).all():
             raise InputError(
-                f"{path}: {name} is not finite at row {int(np.argmin(np.isfinite(columns[name])))}"
+                f"{name} is not finite at row {int(np.argmin(np.isfinite(columns[name])))}", path
             )
     t = columns[names[0]]
     if len(t) < 2 or (np.diff(t) <= 0).any():
-        raise InputError(f"{path}: expected at least two rows with increasing {names[0]}")
+        raise InputError(f"expected at least two rows with increasing {names[0]}", path)

@@ -37,9 +37,9 @@ def results_folder(folder: Path) -> Iterator[None]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{folder}: the folder cannot be made ({error.strerror})") from None
+        raise InputError(f"the folder cannot be made ({error.strerror})", folder) from None
     if not os.access(folder, os.W_OK):
-        raise InputError(f"{folder}: the folder cannot be written")
+        raise InputError("the folder cannot be written", folder)
     try:
         yield
     except BaseException:
@@ -75,7 +75,7 @@ def write_results(results: Sequence[Result], document: Mapping[str, Any], folder
             for name in earlier - written:
                 (folder / name).unlink()
     except OSError as error:
-        raise InputError(f"{folder}: cannot be written ({error.strerror})") from None
+        raise InputError(f"cannot be written ({error.strerror})", folder) from None
 
 
 def _names_of_a_run(folder: Path) -> re.Pattern[str]:
