@@ -29,7 +29,6 @@ from footfall.cli.track import track
 from footfall.cli.walk import walk
 
 app = typer.Typer(
-    add_completion=False,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
     help="Footfall lets a simulated person walk a path with an IMU on the shoe, and tells how far pedestrian "

@@ -34,6 +34,13 @@ def test_the_program_ends_with_code_2_and_one_sentence(here):
     expect_one_sentence(process.returncode, out, err, "walk.csv: no such file")
 
 
+def test_a_shell_completes_commands(tmp_path):
+    asked = {"_FOOTFALL_COMPLETE": "complete_bash", "COMP_WORDS": "footfall sc", "COMP_CWORD": "1"}
+    process = shell("", tmp_path, env=os.environ | asked)
+    out, err = process.communicate()
+    assert (process.returncode, out.split(), err) == (0, ["score"], "")
+
+
 def members(session):
     """Processes of a session, but for the dead that are not yet buried."""
     found = []
