@@ -30,7 +30,7 @@ from rich.table import Table
 from benchmarks._common import err, options, out, run_all, shortened, write_json
 from footfall.models.policy import Policy
 from footfall.scenarios.scenario import load_scenario
-from footfall.simulate import walking as journey
+from footfall.simulate import episode, walking
 from footfall.simulate.episode import SUBSTEPS
 from footfall.simulate.plan import PHYSICS_STEP, Plan
 from footfall.simulate.walker import walkers
@@ -51,9 +51,9 @@ WATCHED: tuple[tuple[str, Any, str], ...] = (
     ("variability", Variability, "draw"),
     ("state", walkers, "land_all"),
     ("steering", Pursuit, "command"),
-    ("truth", journey, "imu_truth"),
-    ("truth", journey, "at_rest"),
-    ("set-up", journey, "build_body"),
+    ("truth", walking, "imu_truth"),
+    ("truth", walking, "at_rest"),
+    ("set-up", episode, "build_body"),
 )
 REST = "record and calls"
 

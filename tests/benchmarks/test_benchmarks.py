@@ -90,7 +90,7 @@ def test_walker_speed_accounts_for_every_second(short: str, tmp_path: Path) -> N
 
 
 def test_errors_of_a_batch_are_the_scores_of_its_tracks(short_walk, monkeypatch) -> None:
-    monkeypatch.setattr("footfall.scenarios.trial.cached_walk", lambda plan, **keys: short_walk)
+    monkeypatch.setattr("footfall.simulate.cache.cached_walk", lambda plan, **keys: short_walk)
     sets = [HdrParams(), HdrParams.from_degrees(i_c_deg_s=0.02, theta_w_deg_s=1.0)]
     wide = METHODS["hdr"].renamed("wide").with_params({"i_c_deg_s": 0.02, "theta_w_deg_s": 1.0})
     trial = Trial(setup(load_scenario("straight"), methods=["pdr", "hdr", wide]), 0, 1, 3, 3)
@@ -174,7 +174,7 @@ def test_a_walk_without_an_end_is_named_and_left_out(
             raise FallError("short: the walker fell at 17 m")
         return short_walk
 
-    monkeypatch.setattr("footfall.scenarios.trial.cached_walk", falls)
+    monkeypatch.setattr("footfall.simulate.cache.cached_walk", falls)
     trials = _common.dealt(setup(load_scenario(short), methods=["pdr"]), 2, 1, (7, 8, 9))
     assert [one.trial.unit_seed for one in _common.outcomes(trials, 1, "")] == [8]
     assert "left out, 2 recordings: short: the walker fell at 17 m" in capsys.readouterr().err
@@ -186,7 +186,7 @@ def test_what_a_method_refuses_is_no_figure(short: str, monkeypatch: pytest.Monk
     def refuses(reckoning, params):
         raise InputError("no")
 
-    monkeypatch.setattr("footfall.scenarios.trial.cached_walk", lambda plan, **keys: short_walk)
+    monkeypatch.setattr("footfall.simulate.cache.cached_walk", lambda plan, **keys: short_walk)
     worn = setup(load_scenario(short), methods=[Method("bad", "", refuses)])
     with pytest.raises(InputError, match="no"):
         _common.outcomes(_common.dealt(worn, 1, 1, (7,)), 1, "")

@@ -31,7 +31,7 @@ def test_its_ways_are_the_methods_of_those_names(short_walk, name):
 
 def test_a_job_wears_each_unit_with_its_bias_and_its_start(short_walk, monkeypatch):
     """A start that is wrong by 5 deg turns the heading by 5; without a bias the filter is right."""
-    monkeypatch.setattr("footfall.scenarios.trial.cached_walk", lambda plan, **keys: short_walk)
+    monkeypatch.setattr("footfall.simulate.cache.cached_walk", lambda plan, **keys: short_walk)
     scenario = load_scenario("ihde-test1")
     scenario = scenario.changed("sensor", imu="perfect", bias_time_s=20.0, bias_shift_deg_s=0.2)
     way = _ihde_ways.Way

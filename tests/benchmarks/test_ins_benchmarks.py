@@ -87,7 +87,7 @@ def test_the_false_bias_page_is_filled_and_drawn(feet, monkeypatch, tmp_path):
 
 def test_the_papers_tests_are_judged_with_their_imu_and_a_perfect_one(short_walk, monkeypatch):
     script = iez_false_bias
-    monkeypatch.setattr("footfall.scenarios.trial.cached_walk", lambda plan, **keys: short_walk)
+    monkeypatch.setattr("footfall.simulate.cache.cached_walk", lambda plan, **keys: short_walk)
     trials = script.paper_trials("ihde-test2", 2)
     assert [(one.number, one.walk_seed, one.setup.imu) for one in trials] == [
         (0, 1, "mtig710"),
