@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from footfall.formats import read
     from footfall.hdr.method import Method
     from footfall.hdr.methods import METHODS
+    from footfall.hdr.tracking import track
     from footfall.pdr.track import Track
     from footfall.recording import Recording
     from footfall.scenarios.evaluate import evaluate
     from footfall.scenarios.judge.score import compare, score
     from footfall.scenarios.scenario import load_scenario
     from footfall.simulate.walk import Walk
-    from footfall.tracking import track
 
 __version__ = "0.1.0"
 
@@ -54,7 +54,7 @@ _HOMES = {
     "load_scenario": "scenarios.scenario",
     "read": "formats",
     "score": "scenarios.judge.score",
-    "track": "tracking",
+    "track": "hdr.tracking",
 }
 
 

@@ -28,7 +28,7 @@ import pyarrow.parquet as pq
 from benchmarks._common import options, write_json
 from benchmarks._page import Sheet
 from footfall.columns import ACCEL, GYRO
-from footfall.tracking import track
+from footfall.hdr.tracking import track
 from tests.helpers.synthetic_foot import walk
 
 RATE, PERIOD = 200, 220  # Hz, samples a stride

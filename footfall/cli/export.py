@@ -22,7 +22,7 @@ def export(
 
     A track has headings alone: its poses are level. Compare positions, not rotations, with those of a walk.
     """
-    from footfall.formats.tum import export_tum
+    from footfall.scenarios.export import export_tum
 
     if format != "tum":
         raise InputError(f"--format {format!r} is unknown, expected tum")

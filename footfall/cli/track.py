@@ -75,9 +75,9 @@ def track(
     The recording is judged by physics first; lost, doubled and clipped samples are told and handled.
     """
     from footfall.formats import parse_units
+    from footfall.hdr.tracking import track as navigate
     from footfall.pdr.reckoning import PdrParams
     from footfall.pdr.track import write_track
-    from footfall.tracking import track as navigate
 
     require_output(output, ".parquet", recording)
     if bias_time is not None:

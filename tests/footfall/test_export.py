@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from footfall.conventions import heading_of
-from footfall.formats.tum import export_tum, write_tum
 from footfall.hdr.methods import Reckoning, tracks
 from footfall.models.imu import draw_unit, load_spec
 from footfall.pdr.track import write_track
+from footfall.scenarios.export import export_tum, write_tum
 from footfall.scenarios.judge.score import score
 from footfall.scenarios.trial import start_pose
 from footfall.simulate.record import record

@@ -5,9 +5,9 @@ import re
 import numpy as np
 import pytest
 
+from footfall.hdr.tracking import track
 from footfall.recording import write_recording
 from footfall.tables import read_table
-from footfall.tracking import track
 from tests.helpers.synthetic_foot import walk
 
 MINE = """
@@ -103,7 +103,8 @@ def test_in_python_a_function_will_do(here):
 
 
 def test_footfalls_are_enough_for_a_recording_too_long_to_be_held(here, monkeypatch):
-    from footfall import Track, tracking
+    from footfall import Track
+    from footfall.hdr import tracking
     from footfall.hdr.methods import find_method
 
     def turned(footfalls, start):

@@ -16,13 +16,13 @@ from scipy.io import savemat
 from footfall.columns import ACCEL, GYRO
 from footfall.errors import InputError
 from footfall.formats import open_source
+from footfall.hdr.tracking import track
 from footfall.pdr import stream
 from footfall.pdr.detectors import DETECTORS
 from footfall.pdr.reckoning import PdrParams, StartPose, dead_reckon
 from footfall.pdr.rest import still_time
 from footfall.pdr.stream import dead_reckon_blocks
 from footfall.recording import Recording, write_recording
-from footfall.tracking import track
 from tests.helpers.synthetic_foot import walk
 
 HEADINGS = np.cumsum(np.random.default_rng(0).normal(0, 0.1, 40))
@@ -122,7 +122,7 @@ def test_a_file_in_blocks_makes_the_track_of_the_whole_file(tmp_path_factory, wa
     ways = (("hdr", {}), ("hde-2010", {"directions": 8, "reference": 0.4}))
     wholes = [track(file, method, start=START, **told) for method, told in ways]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("footfall.tracking.WHOLE_ROWS", 1000)
+        patch.setattr("footfall.hdr.tracking.WHOLE_ROWS", 1000)
         patch.setattr("footfall.formats.table.BLOCK_ROWS", 2048)
         patch.setattr(stream, "WORK_ROWS", 1000)
         in_blocks = [track(file, method, start=START, **told) for method, told in ways]
@@ -157,7 +157,7 @@ def test_a_file_is_opened_once(tmp_path, monkeypatch, format):
         file.unlink()
         return source
 
-    monkeypatch.setattr("footfall.tracking.open_source", open_and_lose)
+    monkeypatch.setattr("footfall.hdr.tracking.open_source", open_and_lose)
     result = track(file, "pdr")
     assert (result.findings.format, result.findings.rows) == (format, len(truth.t))
 
@@ -186,7 +186,7 @@ def test_memory_does_not_grow_with_the_file(tmp_path, monkeypatch):
         assert result.findings.rows == len(rows)
         return len(rows), most + pool.max_memory()
 
-    monkeypatch.setattr("footfall.tracking.WHOLE_ROWS", 1000)
+    monkeypatch.setattr("footfall.hdr.tracking.WHOLE_ROWS", 1000)
     peak(100)  # what is compiled and imported is no part of it
     (few, small), (many, large) = peak(200), peak(1200)
     assert (large - small) / (many - few) < 10
