@@ -204,7 +204,7 @@ def test_a_fall_is_told_and_leaves_nothing(cli, here, monkeypatch):
     before = content(here)
     fell = r"short: the walker fell at -?\d+ m"
     expect_one_sentence(*cli("walk short.toml -o w.parquet"), fell)
-    expect_one_sentence(*cli("run short.toml --walks 1 --units 0 --out new/deep --json"), fell)
+    expect_one_sentence(*cli("run short.toml --walks 1 --units 0 --noises 0 --out new/deep --json"), fell)
     assert content(here) == before
 
 

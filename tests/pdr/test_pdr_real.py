@@ -77,9 +77,9 @@ def test_gdin_footprints_are_met(real, name):
     prints = real[name].footprints
     found = reckoned(real[name])
     assert len(found) == len(prints)  # one footfall a footprint
-    assert np.abs(found.t - prints[:, 0])[1:-1].max() < 0.5
+    assert np.abs(found.t - prints.t)[1:-1].max() < 0.5
 
-    walked = np.hypot(*np.diff(prints[:, 1:], axis=0).T).sum()
+    walked = np.hypot(*np.diff(prints.position, axis=0).T).sum()
     assert found.distance.sum() == pytest.approx(walked, rel=0.02)  # the paper: 1-2 % of the distance
     assert score_footprints(pdr_track(found), prints).footprint_rmse_m < 0.8
 

@@ -2,10 +2,13 @@
 
 import subprocess
 import sys
+from concurrent.futures import Future
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
 
+from footfall.errors import InputError
 from footfall.scenarios import execute, warm
 from footfall.scenarios.execute import execute as perform_all
 from footfall.scenarios.scenario import load_scenario
@@ -87,19 +90,39 @@ def trials(workshop):
 
 
 @pytest.mark.parametrize("known", ["none", "one", "all"])
-def test_it_is_done_once_before_workers_start_and_walks_where_there_is_to_be_walked(
-    trials, known, tmp_path, monkeypatch
-):
+def test_it_is_done_once_before_any_work_is_given_away(trials, known, tmp_path, monkeypatch):
+    """And walks where there is to be walked."""
     done = []
-    monkeypatch.setattr(execute, "warm", lambda trial, walks: done.append((trial, walks)))
-    monkeypatch.setattr(execute, "_spread", lambda *_, workers: iter(done.append("spread") or ()))
+
+    @contextmanager
+    def pool(workers, shared):
+        done.append("workers start")
+        yield Here(done), [0.0] * shared
+
+    monkeypatch.setattr(execute, "warm", lambda trial, walks: done.append((trial.number, walks)))
+    monkeypatch.setattr(execute, "worker_pool", pool)
     monkeypatch.setattr("footfall.simulate.cache.cache_folder", lambda: tmp_path)
     for trial in trials[: ["none", "one", "all"].index(known)]:
         (tmp_path / f"{plan_key(trial.plan, execute.stock_policy())}.parquet").touch()
     told = []
-    assert list(perform_all(trials, workers=2, on_progress=lambda now: told.append(now.compiling))) == []
-    assert done == [(trials[0], known != "all"), "spread"]
-    assert told == [True]
+    assert list(perform_all(trials, workers=2, on_progress=lambda now: told.append(now.compiling)))
+    assert done[:3] == ["workers start", (0, known != "all"), "given away"]
+    assert sum(isinstance(one, tuple) for one in done) == 1
+    assert told[0]
+    assert not any(told[1:])
+
+
+class Here:
+    """A pool whose jobs come to nothing."""
+
+    def __init__(self, done):
+        self.done = done
+
+    def submit(self, job, *given):
+        self.done.append("given away")
+        future = Future()
+        future.set_result(InputError("nobody walked") if job is execute._walk_job else [])
+        return future
 
 
 def test_one_process_compiles_what_it_comes_to(trials, monkeypatch):
