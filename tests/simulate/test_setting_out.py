@@ -97,7 +97,7 @@ def first_steps(starts: ModuleType) -> list[tuple[Person, list]]:
     for person, model, before, pose, load in zip(people, group.models, rest, poses, loads, strict=True):
         angles = starts.feet(model, np.concatenate([before[-1:], pose]))
         yaw, pitch = (angles - angles[:, :, :1])[:, :, 1:].swapaxes(0, 1)
-        found.append((person, starts.set_out("start", yaw, pitch, load.T)))
+        found.append((person, starts.set_out("start", yaw, pitch, load.T, STEP)))
     return found
 
 
