@@ -28,9 +28,7 @@ _LIFTED = 0.2  # body weights; a foot that carries less may do what a swinging f
 _LANDED, _LATEST = 0.05, 0.3  # body weights on it, or so far into the next step, end the first one
 # Lever arms (m) of a loaded foot's torques over the force on it: its centre of pressure stays so far
 # before the ankle and so near its middle line, and what turns it is a sixth of what friction can hold.
-# After a stop, where the feet are, such a narrow bound would fell the walker.
 _BACK, _FRONT = 0.005, 0.10
-_BACK_AFTER_A_STOP, _FRONT_AFTER_A_STOP = 0.02, 0.12
 _ASIDE, _TURN = 0.02, 0.01
 
 _PUSH_ASIDE = mask("hip_adduction_r") - mask("hip_adduction_l")
@@ -95,15 +93,12 @@ def bound_foot(s, ref, out, stands, stance, load, servo, joint):  # type: ignore
     `stands`: through the first step; `stance`: by the phase of the gait.
     """
     loaded = load > _LIFTED * s.weight
-    placed = as_placed(s)
     flat = s.closing | (stance & ((s.phase * 2) % 1 > _FLAT))
-    held = s.setting_out & (stands | (loaded & placed))
+    held = s.setting_out & (stands | (loaded & as_placed(s)))
     lies = (s.setting_out & (stands | loaded)) | (s.stopping & flat & loaded)
     force = np.maximum(load, _LIFTED * s.weight)
     turn, aside = _TURN * force, _ASIDE * force
-    front = choose(placed, _FRONT, _FRONT_AFTER_A_STOP) * force
-    back = choose(placed, -_BACK, _BACK_AFTER_A_STOP) * force
-    bound(s, ref, out, held, servo + _ANKLE, joint + _ANKLE, -front, back)
+    bound(s, ref, out, held, servo + _ANKLE, joint + _ANKLE, -_FRONT * force, -_BACK * force)
     bound(s, ref, out, held, servo + _SUBTALAR, joint + _SUBTALAR, -aside, aside)
     bound(s, ref, out, lies, servo + _ROTATION, joint + _ROTATION, -turn, turn)
 
