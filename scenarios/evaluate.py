@@ -14,6 +14,7 @@ from footfall.hdr.method import Method
 from footfall.pdr.track import Track
 from footfall.scenarios.execute import Progress, execute
 from footfall.scenarios.parameters import documents, with_values
+from footfall.scenarios.report.progress import showing
 from footfall.scenarios.run import OTHER_UNITS_FROM
 from footfall.scenarios.trial import Row, Setup, Trial
 
@@ -119,6 +120,7 @@ def evaluate(
     values : address -> value (`footfall parameters`), as `--set` takes them
     workers : processes, one a core when None; what cannot travel to another process (a lambda, a function
         of a notebook) is called in this one
+    on_progress : as of `execute`; bars on a terminal when None
 
     Returns
     -------
@@ -138,5 +140,6 @@ def evaluate(
         dumps(made.methods)
     except (PicklingError, AttributeError, TypeError):
         workers = 1
-    found = execute(trials, workers=workers, on_progress=on_progress)
-    return Rows(tuple(row for outcome in found for row in outcome.rows))
+    with showing() as progress:
+        found = execute(trials, workers=workers, on_progress=on_progress or progress)
+        return Rows(tuple(row for outcome in found for row in outcome.rows))

@@ -85,25 +85,29 @@ def run(
     The folder gets scores.json, every walk, recording and track (Parquet) and the figures (PNG).
     """
     from footfall.cli.choices import dropped_effects, methods_of, told_directions
-    from footfall.cli.progress import perform_showing
+    from footfall.identity import plain
     from footfall.scenarios.parameters import documents, parsed, with_values
     from footfall.scenarios.report.document import run_document
+    from footfall.scenarios.report.progress import showing
     from footfall.scenarios.report.results import results_folder, write_results
     from footfall.scenarios.report.tables import run_report
-    from footfall.scenarios.run import parts
+    from footfall.scenarios.run import parts, perform_run
 
     chosen = methods_of(methods)
-    base = documents(scenario, imu=imu, methods=chosen, without=dropped_effects(without, only))
+    dropped = dropped_effects(without, only)
+    base = documents(scenario, imu=imu, methods=chosen, without=dropped)
     values = told_directions(chosen, directions, reference)
     values |= {} if detector is None else {"pdr.detector": detector}
     values |= {} if bias_time is None else {"pdr.bias_s": bias_time}
-    setup = with_values(base, values | parsed(settings or ())).setup()
+    values |= parsed(settings or ())
+    setup = with_values(base, values).setup()
     name = setup.scenario.name
     todo = parts(setup, walks=walks, seed=seed, other_units=units, noises=noises)
     folder = out or Path("out") / name
     with results_folder(folder):
-        results = perform_showing(todo, use_cache=not no_cache)
-        document = run_document(name, results)
+        with showing() as progress:
+            results = perform_run(todo, use_cache=not no_cache, on_progress=progress)
+        document = run_document(name, results, plain(values), dropped)
         with ERR.status("writing files and figures"):
             write_results(results, document, folder)
     if as_json:

@@ -22,12 +22,25 @@ def scores_by_method(rows: Sequence[Mapping[str, Score]]) -> dict[str, list[Scor
     return {name: [row[name] for row in rows] for name in rows[0]} if rows else {}
 
 
-def run_document(scenario: str, results: Sequence[Result]) -> dict[str, Any]:
-    """The document of `run --json` (docs/scores.md)."""
+def run_document(
+    scenario: str,
+    results: Sequence[Result],
+    settings: Mapping[str, Any] | None = None,
+    without: Sequence[str] = (),
+) -> dict[str, Any]:
+    """The document of `run --json` (docs/scores.md).
+
+    Parameters
+    ----------
+    settings : address -> value, in place of what the documents say
+    without : sensor effects that were switched off
+    """
     document: dict[str, Any] = {
         "scenario": scenario,
         "distance_m": float(np.mean([distance_m(result) for result in results])),
         "duration_s": float(np.mean([_duration_s(result) for result in results])),
+        **({"settings": dict(settings)} if settings else {}),
+        **({"without": list(without)} if without else {}),
         "versions": versions(),
         "walks": [
             {

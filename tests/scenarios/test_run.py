@@ -21,7 +21,7 @@ from footfall.scenarios.trial import reckoning, setup, start_pose
 from footfall.simulate.record import record
 from footfall.simulate.walk import read_walk
 from footfall.tables import read_table
-from tests.helpers.commands import SCORES, content, one_document
+from tests.helpers.commands import SCORES, content, expect_one_sentence, one_document
 
 FIGURES = {"maps.png", "heading_error.png", "drift_budget.png", "filtered_rates.png", "controller.png"}
 
@@ -334,3 +334,40 @@ def test_results_are_written_all_or_none(done, tmp_path, monkeypatch, trouble):
     with pytest.raises(expected, match=message):
         write_results([done], {"scenario": "short"}, tmp_path)
     assert content(tmp_path) == before
+
+
+def test_what_was_set_reaches_the_scores_and_is_told(cli, here):
+    options = "--walks 1 --units 0 --noises 0 --methods pdr,hdr --json"
+    _, plain, _ = cli(f"run short.toml {options}")
+    code, out, _ = cli(
+        f"run short.toml {options} --set hdr.theta_w_deg_s=0.01 --bias-time 20 --detector shoe "
+        "--only scale --out other"
+    )
+    assert code == 0
+    first, second = one_document(plain), one_document(out)
+    assert "settings" not in first
+    assert second["settings"] == {"pdr.detector": "shoe", "pdr.bias_s": 20.0, "hdr.theta_w_deg_s": 0.01}
+    assert "scale" not in second["without"]
+    assert {"white", "flicker"} <= set(second["without"])
+    for method in ("pdr", "hdr"):
+        assert first["mean"][method] != second["mean"][method]
+
+
+@pytest.mark.parametrize(
+    ("options", "culprit"),
+    [
+        ("--set hdr.theta=1", r"hdr\.theta: unknown; did you mean .*theta_w_deg_s"),
+        ("--set iez.sigma_velocity=1", "method 'iez' is not among hdr, pdr"),
+        ("--set nothing", "--set nothing: expected ADDRESS=VALUE"),
+        ("--without white --only flicker", "--without and --only: expected one of them"),
+        ("--only nothing", "effect 'nothing' does not exist"),
+        ("--directions 4", "none of pdr, hdr goes by dominant directions"),
+        ("--bias-time 40", r"calibration_s = 26: a run averages .* = 40 s"),
+        ("--detector best", "detector 'best' is unknown"),
+        ("--methods pdr,pdr=hdr", "'pdr'"),
+    ],
+)
+def test_a_setting_that_cannot_be_is_one_sentence_before_anything_is_walked(cli, here, options, culprit):
+    before = content(here)
+    expect_one_sentence(*cli(f"run short.toml {options}"), culprit)
+    assert content(here) == before

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from footfall.cli.terminal import ERR
 from footfall.scenarios.execute import Progress as Done
-from footfall.scenarios.run import Part, Result, perform_run
 
 
 @contextmanager
 def showing() -> Iterator[Callable[[Done], None]]:
     """One bar for the metres walked and one for the trials; nothing where there is no terminal."""
+    console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=ERR, transient=True, disable=not ERR.is_terminal) as bars:
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
         walked = bars.add_task("metres walked", total=None)
         tried = bars.add_task("recordings navigated", total=None)
         lengths: list[float] = []
@@ -33,9 +33,3 @@ def showing() -> Iterator[Callable[[Done], None]]:
             bars.update(tried, completed=now.done, total=now.trials)
 
         yield show
-
-
-def perform_showing(todo: Sequence[Part], use_cache: bool) -> list[Result]:
-    """All results of a run, with its progress."""
-    with showing() as show:
-        return perform_run(todo, use_cache=use_cache, on_progress=show)
