@@ -53,6 +53,7 @@ def parameters(
         print_json({one.address: {**one._asdict(), "default": _plain(one.default)} for one in found})
         return
     table = new_table("address", "value", "allowed", "repeats", left=4)
+    table.columns[0].no_wrap = True  # to be copied
     for one in found:
         value = f"{_text(one.default)} {one.unit}" if one.default is not None else one.unit
         table.add_row(one.address, value, ", ".join(filter(None, (one.type, one.bounds))), one.stage)
