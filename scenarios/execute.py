@@ -268,10 +268,16 @@ def worker_pool(workers: int, shared: int = 0) -> Iterator[tuple[ProcessPoolExec
     Yields
     ------
     The pool, and the shared numbers.
+
+    Raises
+    ------
+    InputError
+        A worker ended before its work did.
     """
     # Spawned, not forked: threads of the physics and of numerical libraries do not survive a fork.
     context = multiprocessing.get_context("spawn")
     numbers = context.RawArray("d", shared)
+    all_there = False
     others = set(multiprocessing.active_children())
     with ProcessPoolExecutor(workers, context, _start_worker, (numbers,)) as pool:
         try:
@@ -281,10 +287,13 @@ def worker_pool(workers: int, shared: int = 0) -> Iterator[tuple[ProcessPoolExec
                 # A spawning pool starts a worker with each job until all are there.
                 for started in [pool.submit(os.getpid) for _ in range(workers)]:
                     started.result()
+                all_there = True
             finally:
                 signal.pthread_sigmask(signal.SIG_SETMASK, mask)
             yield pool, numbers
         except BrokenProcessPool as error:
+            if all_there:
+                raise InputError("a worker process was ended: killed, or out of memory") from error
             raise InputError(
                 'a worker ended at once: a script must call this below `if __name__ == "__main__":`, or '
                 "with workers=1"

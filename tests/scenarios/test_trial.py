@@ -1,5 +1,6 @@
 """The atom and how it is spread: rows as the chain by hand gives them, shared walks, failures as rows."""
 
+import os
 import subprocess
 import sys
 from dataclasses import replace
@@ -249,6 +250,16 @@ def test_a_script_without_a_main_guard_is_told(tmp_path):
     done = subprocess.run([sys.executable, str(file)], capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert "InputError: a worker ended at once: a script must call this below `if __name__" in done.stderr
+
+
+def end_at_once():
+    os.kill(os.getpid(), 9)
+
+
+def test_a_worker_that_is_killed_is_told_as_such():
+    told = pytest.raises(InputError, match="a worker process was ended: killed, or out of memory")
+    with told, executing.worker_pool(1) as (pool, _):
+        pool.submit(end_at_once).result()
 
 
 # In one line
