@@ -67,6 +67,7 @@ _BEND_L = mask("knee_l") + 0.5 * mask("hip_flexion_l") + 0.5 * mask("ankle_l")
 # Places in qpos, qvel and the sensors.
 _HIP_R, _HIP_L = 7 + JOINTS.index("hip_flexion_r"), 7 + JOINTS.index("hip_flexion_l")
 _SIDE_R, _SIDE_L = 7 + JOINTS.index("hip_adduction_r"), 7 + JOINTS.index("hip_adduction_l")
+_TURN_R, _TURN_L = 7 + JOINTS.index("hip_rotation_r"), 7 + JOINTS.index("hip_rotation_l")
 _ROLL, _PITCH = 7 + JOINTS.index("lumbar_roll"), 7 + JOINTS.index("lumbar_pitch")
 _FOOT_R, _FOOT_L = SENSOR_FOOT_POSITION.start, SENSOR_FOOT_POSITION.start + 3
 
@@ -266,6 +267,9 @@ def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
     stagger = clip((s.qpos[_HIP_R] - s.qpos[_HIP_L]) / 2, -0.19, 0.19)
     spread = clip((s.qpos[_SIDE_R] + s.qpos[_SIDE_L]) / 2, -0.12, 0.02)
     s.stagger, s.spread = choose(new, stagger, s.stagger), choose(new, spread, s.spread)
+    s.out_right = choose(new, -s.qpos[_TURN_R], s.out_right)
+    s.out_left = choose(new, -s.qpos[_TURN_L], s.out_left)
+    s.stopping = (s.speed_goal <= GO_SPEED) & (s.speed < _STOP_SPEED) & np.logical_not(s.setting_out)
 
 
 @register_jitable
