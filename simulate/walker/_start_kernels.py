@@ -31,7 +31,9 @@ _LANDED, _LATEST = 0.05, 0.3  # body weights on it, or so far into the next step
 # Lever arms (m) of a loaded foot's torques over the force on it: its centre of pressure stays so far
 # before the ankle and so near its middle line, and what turns it is a sixth of what friction can hold.
 _BACK, _FRONT = 0.005, 0.10
-_BACK_AFTER_A_STOP, _FRONT_AFTER_A_STOP = -0.01, 0.12
+_BACK_AFTER_A_STOP, _FRONT_AFTER_A_STOP, _ASIDE_AFTER_A_STOP = -0.01, 0.12, 0.04
+# A slope asks for more, or twice as many would fall when they stop across one of 8 %.
+_TURN_ON_SLOPES = 0.12
 _ASIDE, _TURN = 0.02, 0.01
 
 _PUSH_ASIDE = mask("hip_adduction_r") - mask("hip_adduction_l")
@@ -101,9 +103,12 @@ def bound_foot(s, ref, out, stands, stance, load, servo, joint):  # type: ignore
     rests = s.closing | choose(stance, loaded & (step > _FLAT), step < _LEAVING)
     lies = (s.setting_out & (stands | loaded)) | (s.stopping & rests)
     force = np.maximum(load, _LIFTED * s.weight)
-    turn, aside = _TURN * force, _ASIDE * force
-    front = choose(placed, _FRONT, _FRONT_AFTER_A_STOP) * force
-    back = choose(placed, _BACK, _BACK_AFTER_A_STOP) * force
+    first = s.setting_out & placed
+    slope = np.sqrt(s.grade_forward * s.grade_forward + s.grade_left * s.grade_left)
+    turn = (_TURN + choose(first, 0.0, _TURN_ON_SLOPES * slope)) * force
+    aside = choose(first, _ASIDE, _ASIDE_AFTER_A_STOP) * force
+    front = choose(first, _FRONT, _FRONT_AFTER_A_STOP) * force
+    back = choose(first, _BACK, _BACK_AFTER_A_STOP) * force
     bound(s, ref, out, held, servo + _ANKLE, joint + _ANKLE, -front, -back)
     bound(s, ref, out, held, servo + _SUBTALAR, joint + _SUBTALAR, -aside, aside)
     bound(s, ref, out, lies, servo + _ROTATION, joint + _ROTATION, -turn, turn)

@@ -151,8 +151,8 @@ def test_loaded_feet_hardly_turn_at_the_last_step_and_when_setting_out_again(sto
     twist = [one.twist for one in stops if one.kind == kind]
     up = [one.up for one in stops if one.kind == kind]
     assert len(twist) == 20
-    assert max(twist) < {"stop": 3.5, "restart": 0.8}[kind]
-    assert np.percentile(twist, 90) < {"stop": 2.1, "restart": 0.5}[kind]
+    assert max(twist) < {"stop": 3.5, "restart": 1.2}[kind]
+    assert np.percentile(twist, 90) < {"stop": 2.2, "restart": 0.8}[kind]
     assert max(up) < {"stop": 10.0, "restart": 5.5}[kind]
 
 
@@ -261,6 +261,7 @@ def test_torques_of_a_loaded_foot_leave_its_pressure_under_it(seed: int) -> None
     rng, n = np.random.default_rng(seed), 16
     state = np.zeros(n, WALKER)
     state["weight"], state["setting_out"], state["left_first"] = 700.0, *(rng.random((2, n)) < 0.7)
+    state["grade_forward"], state["grade_left"] = rng.normal(0, 0.05, (2, n))
     state["stagger"] = np.where(rng.random(n) < 0.5, 0.0, 0.1)
     state["stopping"], state["closing"], state["left_stance"] = rng.random((3, n)) < [[0.7], [0.3], [0.5]]
     state["stopping"] &= ~state["setting_out"]
@@ -282,16 +283,21 @@ def test_torques_of_a_loaded_foot_leave_its_pressure_under_it(seed: int) -> None
         step = (2 * state["phase"]) % 1
         rests = state["closing"] | np.where(stance, loaded & (step > 0.15), step < 0.25)
         lies = (state["setting_out"] & (stands | loaded)) | (state["stopping"] & rests)
+        first = state["setting_out"] & placed
+        slope = np.hypot(state["grade_forward"], state["grade_left"])
         for name, who, low, high in (
             ("ankle", held & placed, -0.1, -0.005),
             ("ankle", held & ~placed, -0.12, 0.01),
-            ("hip_rotation", lies, -0.01, 0.01),
-            ("subtalar", held, -0.02, 0.02),
+            ("hip_rotation", lies & first, -0.01, 0.01),
+            ("hip_rotation", lies & ~first, -0.01 - 0.12 * slope, 0.01 + 0.12 * slope),
+            ("subtalar", held & placed, -0.02, 0.02),
+            ("subtalar", held & ~placed, -0.04, 0.04),
         ):
             servo = list(SERVOS).index(f"{name}_{side}")
             force = np.maximum(load[:, foot], 140)[who, None]
-            assert (torque[who][:, :, servo] >= low * force - 1e-9).all()
-            assert (torque[who][:, :, servo] <= high * force + 1e-9).all()
+            least, most = (np.broadcast_to(bound, n)[who, None] * force for bound in (low, high))
+            assert (torque[who][:, :, servo] >= least - 1e-9).all()
+            assert (torque[who][:, :, servo] <= most + 1e-9).all()
             free[who, :, servo] = False
     np.testing.assert_array_equal(found[free], wanted[free])
 
