@@ -29,6 +29,7 @@ GO_SPEED = 0.2  # m/s; a commanded speed above it is a wish to walk
 _RESIDUAL_LIMIT = 2.0  # of action scale, feedback included
 _BRAKE = 0.2  # rad per m/s
 _STOP_SPEED = CREEP + 0.05
+_STEEP = 0.065  # who stops on steeper slopes needs all its torque, or falls half as often again
 _GATE_DOWN_S, _GATE_UP_S, _FIRST_GATE_UP_S = 0.23, 0.35, 0.40
 _PENDULUM_S = 0.31  # sqrt(height of the centre of mass / g)
 _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
@@ -269,7 +270,9 @@ def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
     s.stagger, s.spread = choose(new, stagger, s.stagger), choose(new, spread, s.spread)
     s.out_right = choose(new, -s.qpos[_TURN_R], s.out_right)
     s.out_left = choose(new, -s.qpos[_TURN_L], s.out_left)
-    s.stopping = (s.speed_goal <= GO_SPEED) & (s.speed < _STOP_SPEED) & np.logical_not(s.setting_out)
+    steep = s.grade_forward * s.grade_forward + s.grade_left * s.grade_left > _STEEP * _STEEP
+    nearly = (s.speed_goal <= GO_SPEED) & (s.speed < _STOP_SPEED)
+    s.stopping = nearly & np.logical_not(s.setting_out | steep)
 
 
 @register_jitable

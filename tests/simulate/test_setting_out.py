@@ -17,8 +17,10 @@ from footfall.models.policy import stock_policy
 from footfall.models.subject import Build, Subject, draw_subject
 from footfall.simulate.episode import stroll
 from footfall.simulate.plan import Plan
+from footfall.simulate.walker._balance_kernels import act_all
 from footfall.simulate.walker._gait_kernels import REFERENCE
 from footfall.simulate.walker._start_kernels import hold_feet, set_out
+from footfall.simulate.walker.feedback import gain_records
 from footfall.simulate.walker.state import WALKER, Columns
 from footfall.simulate.walker.walkers import Walkers
 
@@ -247,6 +249,27 @@ def test_setting_out_lasts_until_the_foot_that_steps_first_has_landed(left_first
     state["sensor"][:, ball + 3 if left_first else ball] = 400.0
     set_out(Columns(state), np.ones(len(cases), dtype=bool), np.array([phase for *_, phase, _ in cases]))
     assert state["setting_out"].tolist() == [lasts for *_, lasts in cases]
+
+
+def test_who_is_slow_and_wishes_to_stand_comes_to_rest_except_on_steep_slopes() -> None:
+    cases = [  # speed, speed to go to, along and across the slope
+        (0.3, 0.0, 0.05, 0.0, True),
+        (0.3, 0.0, 0.0, -0.05, True),
+        (0.3, 0.0, 0.05, 0.05, False),
+        (0.3, 0.0, -0.07, 0.0, False),
+        (0.4, 0.0, 0.0, 0.0, False),
+        (0.3, 0.5, 0.0, 0.0, False),
+    ]
+    n = len(cases)
+    group = stand([Person() for _ in range(n)])
+    walk_on(group, 0.3)
+    state = group._state
+    columns = np.array(cases).T
+    for name, column in zip(("speed", "speed_goal", "grade_forward", "grade_left"), columns[:4], strict=True):
+        state[name] = column
+    state["closing"], state["gate"] = False, 1.0
+    act_all(state, gain_records(group.gains), np.zeros((n, N_SERVOS)))
+    assert state["stopping"].tolist() == [rests for *_, rests in cases]
 
 
 @settings(max_examples=50)
