@@ -256,9 +256,8 @@ def walk_of(
     FallError, StrayError
         The walker did not reach the end.
     """
-    from footfall.simulate.cache import (
-        cached_walk,
-    )  # the physics, which its documents and settings do without
+    # Late: the physics, which documents and settings do without.
+    from footfall.simulate.cache import cached_walk
 
     return cached_walk(trial.plan, folder=folder, on_progress=on_progress)
 
