@@ -68,6 +68,7 @@ def add_errors(
                 "imu": unit.spec.name,
                 "imu_digest": digest_of(unit.spec),
                 "unit_seed": unit.seed,
+                "unit_digest": digest_of(unit),
                 "noise_seed": seed,
                 "temperature": asdict(temperature),
                 "effects": [name for name in ADDED if name not in without],

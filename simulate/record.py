@@ -125,6 +125,7 @@ def _recording(
             "imu": unit.spec.name,
             "imu_digest": digest_of(unit.spec),
             "unit_seed": unit.seed,
+            "unit_digest": digest_of(unit),
             "noise_seed": seed,
             "temperature": asdict(temperature),
             "without": sorted(without),

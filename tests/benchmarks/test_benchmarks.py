@@ -356,17 +356,8 @@ def test_a_fall_is_reported_and_not_averaged(
 
 
 def test_a_script_runs_from_the_shell_over_two_processes(short: str, tmp_path: Path) -> None:
-    command = [
-        sys.executable,
-        "-m",
-        "benchmarks.validation.robustness",
-        short,
-        "--seeds",
-        "2",
-        "--metres",
-        "10",
-        "--no-cache",
-    ]
+    options = [short, "--seeds", "2", "--metres", "10", "--no-cache"]
+    command = [sys.executable, "-m", "benchmarks.validation.robustness", *options]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
     assert "2 of 2" in done.stdout
 

@@ -10,6 +10,7 @@ from footfall.errors import InputError
 from footfall.hdr.methods import METHODS, Reckoning, tracks
 from footfall.identity import WalkIdentity, digest_of, plain
 from footfall.models.imu import draw_unit, load_spec
+from footfall.models.imu.override import overridden
 from footfall.models.mount import MOUNTS, Mount
 from footfall.models.policy import stock_policy
 from footfall.models.route import Ground
@@ -174,3 +175,12 @@ def test_a_track_of_another_walk_is_not_judged(short_walk, short_plan, recording
     # Nobody knows what these were made of.
     assert score(replace(track, meta={}), short_walk) == score(track, short_walk)
     assert score(track, replace(short_walk, meta={})) == score(track, short_walk)
+
+
+def test_a_unit_given_by_hand_is_not_the_one_that_its_seed_draws(short_walk):
+    unit = draw_unit(load_spec("nimu"), 7)
+    drawn = record(short_walk, unit, seed=9).meta
+    given = record(short_walk, overridden(unit, {"gyro.scale": [0.0, 0.0, 0.01]}), seed=9).meta
+    assert drawn["unit_digest"] == record(short_walk, unit, seed=10).meta["unit_digest"]
+    assert (drawn["unit_seed"], drawn["imu_digest"]) == (given["unit_seed"], given["imu_digest"])
+    assert drawn["unit_digest"] != given["unit_digest"]
