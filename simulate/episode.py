@@ -14,15 +14,12 @@ from footfall.models.policy import Policy
 from footfall.simulate.plan import PHYSICS_STEP, Plan, Stop, shrunk
 from footfall.simulate.walker.disturbance import Push, Pusher, pushes
 from footfall.simulate.walker.steering import Pursuit, pace_along
-from footfall.simulate.walker.walkers import N_ACTION, Trace, Walkers
+from footfall.simulate.walker.walkers import N_ACTION, Trace, Walkers, grip
 from footfall.streams import stream
 
 SUBSTEPS = 30  # physics steps of a control step
 STAND_S = 16.0  # s of standing, to come to rest, before the record begins
 END_STAND_S = 5.0  # s of standing at the end
-# A standing foot would creep by tenths of a millimetre a second, on a slope by millimetres, and under the
-# torques of the first step it would turn by some degrees.
-_NOSLIP_ITERATIONS = 4
 _SLOWEST = 0.35  # m/s; a walk that takes longer than this, or to a stop longer than _SETTLING (s), is stuck
 _SETTLING = 20.0
 
@@ -112,8 +109,7 @@ class Episode:
         walkers = self.walkers
         x, y = walkers.qpos[0, :2]
         standing = bool(walkers.gate.value[0] <= 0)
-        steady = bool(walkers.steady[0])
-        walkers.models[0].opt.noslip_iterations = _NOSLIP_ITERATIONS if steady else 0
+        grip(walkers)
         speed, turn = self._pursuit.command(x, y, walkers.heading[0], walkers.speed[0], standing)
         walkers.speed_goal[0], walkers.turn_goal[0] = speed, turn
 

@@ -13,7 +13,7 @@ from footfall.models.route import Route
 from footfall.models.subject import Subject, draw_subject
 from footfall.simulate.plan import Stop
 from footfall.simulate.walker.steering import Pursuit, StrayError
-from footfall.simulate.walker.walkers import CONTROL_INTERVAL, Walkers
+from footfall.simulate.walker.walkers import CONTROL_INTERVAL, Walkers, grip
 
 _SPACING = 0.05  # m, of the routes' samples
 _PHYSICS_STEP = 0.0025  # s
@@ -154,6 +154,7 @@ def attempt(
                 over[i] = True
                 continue
             walkers.speed_goal[i], walkers.turn_goal[i] = speed, turn
+        grip(walkers)
         walkers.step(policy(walkers.observe()))
         over |= walkers.fallen()
         for i in np.flatnonzero(over).tolist():

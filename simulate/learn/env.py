@@ -22,7 +22,7 @@ from footfall.models.subject import Build, Habits
 from footfall.simulate.learn.reward import reward_terms, total
 from footfall.simulate.walker.feedback import GAIN_SHAPE
 from footfall.simulate.walker.observation import LIMIT, N_OBSERVATION
-from footfall.simulate.walker.walkers import N_ACTION, Trace, Walkers
+from footfall.simulate.walker.walkers import N_ACTION, Trace, Walkers, grip
 
 EPISODE_STEPS = 333  # 10 s
 
@@ -46,9 +46,9 @@ class Difficulty:
     slow: float = 0.12
     turn: float = 1.1
     grade: float = 0.09
-    stop: float = 0.3
+    stop: float = 0.35
     stand: float = 0.2
-    halt: float = 0.25
+    halt: float = 0.35
     kick: float = 0.08
     variability: float = 1.2
 
@@ -167,7 +167,8 @@ class CommandedWalkers:
     def _tilt_gravity(self, mask: np.ndarray) -> None:
         """Sloping ground is level ground under tilted gravity."""
         d, rng, walkers, n = self.difficulty, self.rng, self.walkers, int(mask.sum())
-        tangent = rng.uniform(0, d.grade * d.level, n) * (rng.random(n) < 0.7)
+        # Steep ones are the hardest to stop on, so they are drawn more often than slight ones.
+        tangent = d.grade * d.level * np.sqrt(rng.random(n)) * (rng.random(n) < 0.7)
         azimuth = rng.uniform(-np.pi, np.pi, n)
         up = np.stack([tangent * np.cos(azimuth), tangent * np.sin(azimuth), np.ones(n)], 1)
         up /= np.linalg.norm(up, axis=1)[:, None]
@@ -177,6 +178,7 @@ class CommandedWalkers:
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, np.ndarray, Trace]:
         """Rewards (n,), falls (n,) and the physics of one control step."""
+        grip(self.walkers)
         self.terms, trace = rewarded_step(self.walkers, action)
         self._change_commands()
         return total(self.terms), self.walkers.fallen(), trace

@@ -32,6 +32,7 @@ WEIGHTS = {
     "impact": -0.8,
     "foot_jolt": -0.15,
     "dawdle": -0.5,
+    "restless": -1.0,
     "wide": -0.12,
 }
 # Joint angles to the elevation of the soles, right and left.
@@ -43,6 +44,8 @@ _SOLE = np.stack(
     1,
 )
 _BODY_WEIGHT = 740.0  # N
+_LOADED = 0.2  # body weights
+_RESTLESS_MOST = 4.0  # rad/s
 
 # Vertical ground force of one foot over its stride, in body weights, at about 1.3 m/s (rounded from normative
 # data: Winter; Perry & Burnfield): two humps round a mid-stance dip.
@@ -55,6 +58,24 @@ _LOAD = np.array(
 def window(phase: np.ndarray, start: float, end: float, ramp: float = 0.03) -> np.ndarray:
     """1 inside (start, end) of the stride, 0 outside, with linear ramps."""
     return np.clip(np.minimum((phase - start) / ramp, (end - phase) / ramp) + 0.5, 0, 1)
+
+
+def restless(walkers: Walkers, trace: Trace) -> np.ndarray:
+    """(n,) rad/s by which loaded feet turn and tip while they should lie still.
+
+    A foot that is to step rises with its heel, so only the one that the gait stands on counts as tipping; of
+    who has decided to stand, both.
+    """
+    n, k = walkers.n, walkers.substeps
+    rate = trace.sensor[:, :, body.SENSOR_FOOT_RATE].reshape(n, k, 2, 3)
+    force = trace.sensor[:, :, body.SENSOR_TOUCH].reshape(n, k, 2, 3).sum(-1)
+    turn = np.abs(rate[..., 2])
+    sin, cos = walkers.sin[:, None, None], walkers.cos[:, None, None]
+    tip = np.abs(cos * rate[..., 1] - sin * rate[..., 0])
+    left, stands = walkers.left_stance, walkers.gate.closing
+    stance = np.stack([stands | ~left, stands | left], axis=1)[:, None]
+    moved = np.where(force > _LOADED * _BODY_WEIGHT, turn + tip * stance, 0.0).sum(-1).mean(1)
+    return np.where(walkers.steady, np.minimum(moved, _RESTLESS_MOST), 0.0)
 
 
 def reward_terms(
@@ -123,6 +144,7 @@ def reward_terms(
         "foot_jolt": np.clip(jolt / 50 - 1, 0, 2.5),
         # Wants to stop and still drifts.
         "dawdle": np.where((walkers.speed_goal < 0.2) & (gate > 0.01), np.abs(np.clip(lag, -0.3, 1)), 0.0),
+        "restless": restless(walkers, trace),
         # Ankles more than 13 cm apart sideways, or less than 10.
         "wide": gate
         * (np.clip((separation - 0.13) / 0.05, 0, 2) + np.clip((0.10 - separation) / 0.05, 0, 2)),

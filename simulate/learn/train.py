@@ -3,8 +3,11 @@
 Stage 1 tunes the gains of the balance feedback by CMA-ES with no policy; stage 2 trains the policy on top by
 PPO. The difficulty rises from straight walking to everything, and everything stays in every later batch: a
 walker that is taught one thing at a time forgets the others. Stage 3 lets the last checkpoints walk fixed
-courses, keeps the one that falls least as DIR/walker.npz, and judges it on other courses. Needs
-`pip install footfall[train]`.
+courses, stop and set out again, keeps the best one as DIR/walker.npz, and judges it on other courses and with
+other people. Needs `pip install footfall[train]`.
+
+With `--start FILE` a finished walker learns on, with its gains: the second half of the samples, after its
+value has been learnt from the first few.
 """
 
 from __future__ import annotations
@@ -12,7 +15,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +23,19 @@ import cma
 import numpy as np
 import torch
 
-from footfall.models.policy import load_policy
-from footfall.simulate.learn.courses import CHOICE, CHOICE_SEED, JUDGEMENT, JUDGEMENT_SEED, Verdict, attempt
+from footfall.models.policy import Policy, load_policy
+from footfall.simulate.learn.courses import (
+    CHOICE,
+    CHOICE_SEED,
+    JUDGEMENT,
+    JUDGEMENT_SEED,
+    Course,
+    Verdict,
+    attempt,
+)
 from footfall.simulate.learn.env import CommandedWalkers, Difficulty, WalkVectorEnv, draw_build
 from footfall.simulate.learn.ppo import HORIZON, Learner, Schedule
+from footfall.simulate.learn.stops import StopVerdict, attempt_stops
 from footfall.simulate.walker.feedback import GAIN_SCALE, GAIN_START
 from footfall.simulate.walker.observation import N_OBSERVATION
 from footfall.simulate.walker.walkers import CONTROL_INTERVAL, N_ACTION
@@ -31,6 +43,8 @@ from footfall.tables import replacing
 
 ENVS = 64
 _CANDIDATES, _REPEATS, _TRIAL_S = 16, 4, 6.0
+_VALUE_FIRST = 300_000  # samples, of a policy that learns on
+_EXCESS_WEIGHT = 0.5  # of a degree, beside one fall an hour or one in a hundred stops
 _KEEP_FROM, _KEEP_EVERY = 0.6, 0.05  # of the planned samples: checkpoints among which the best is chosen
 
 
@@ -98,14 +112,24 @@ def save_policy(learner: Learner, gains: np.ndarray, path: Path, meta: dict[str,
         np.savez(file, **arrays)
 
 
-def train(out: Path, seed: int, samples: int, generations: int, threads: int) -> None:
-    """Train, or resume in `out`; writes checkpoint.pt, policy.npz (every ~0.5 M samples) and log.jsonl."""
+def train(
+    out: Path, seed: int, samples: int, generations: int, threads: int, start: Path | None = None
+) -> None:
+    """Train, or resume in `out`; writes checkpoint.pt, policy.npz (every ~0.5 M samples) and log.jsonl.
+
+    A policy to `start` from counts as trained with half of the samples.
+    """
     torch.set_num_threads(1)
     out.mkdir(parents=True, exist_ok=True)
     learner = Learner(N_OBSERVATION, N_ACTION, seed)
     checkpoint, gains_file = out / "checkpoint.pt", out / "gains.npy"
-    done = 0
-    if gains_file.exists():
+    finished = None if start is None else load_policy(start)
+    begin = 0 if finished is None else samples // 2
+    done = begin
+    if finished is not None:
+        learner.adopt(finished)
+        gains = finished.feedback_gains
+    elif gains_file.exists():
         gains = np.load(gains_file)
     else:
         gains = tune_gains(seed, generations, threads)
@@ -122,7 +146,8 @@ def train(out: Path, seed: int, samples: int, generations: int, threads: int) ->
         level, bounds = schedule(done, samples)
         env.commanded.difficulty = replace(env.commanded.difficulty, level=level)
         batch, observation = learner.collect(env, observation)
-        divergence = learner.update(batch, bounds)
+        young = finished is not None and done < begin + _VALUE_FIRST
+        divergence = learner.update(batch, bounds, only_value=young)
         done += batch["advantage"].size
         iteration += 1
         if iteration % 20 and done < samples:
@@ -144,7 +169,10 @@ def train(out: Path, seed: int, samples: int, generations: int, threads: int) ->
         print(" ".join(f"{key} {value:.4g}" for key, value in record.items()), flush=True)
         with replacing(checkpoint) as temporary:
             torch.save({"learner": learner.state(), "samples": done}, temporary)
-        meta = {"seed": seed, "samples": done, "samples_planned": samples, "generations": generations}
+        meta: dict[str, Any] = {"seed": seed, "samples": done}
+        meta |= {"samples_planned": samples, "generations": generations}
+        if finished is not None:
+            meta |= {"start": finished.digest, "start_samples": begin}
         save_policy(learner, gains, out / "policy.npz", meta)
         part = done / samples
         if part >= _KEEP_FROM:
@@ -155,31 +183,46 @@ def train(out: Path, seed: int, samples: int, generations: int, threads: int) ->
 
 
 def choose(out: Path, threads: int) -> None:
-    """Keep the checkpoint that falls least on the courses of choice as walker.npz, and judge it on others.
+    """Keep the checkpoint that is best on the courses of choice as walker.npz, and judge it on others.
 
-    Writes choice.json.
+    A fall an hour on the courses counts as one in a hundred stops, and as 2 deg by which loaded feet twist or
+    tip too far. Writes choice.json.
     """
 
-    def told(verdict: Verdict) -> dict[str, Any]:
-        return {"falls_per_hour": verdict.falls_per_hour, "minutes": verdict.minutes, "falls": verdict.falls}
+    def tried(policy: Policy, courses: tuple[Course, ...], seed: int) -> tuple[Verdict, StopVerdict]:
+        return (
+            attempt(policy, courses, seed=seed, threads=threads),
+            attempt_stops(policy, seed=seed, threads=threads),
+        )
 
-    found: dict[str, Verdict] = {}
+    def told(walked: Verdict, stopped: StopVerdict) -> dict[str, Any]:
+        courses = {"falls_per_hour": walked.falls_per_hour, "minutes": walked.minutes, "falls": walked.falls}
+        return {**courses, "stops": asdict(stopped)}
+
+    def cost(name: str) -> float:
+        walked, stopped = found[name]
+        return walked.falls_per_hour + stopped.falls_percent + _EXCESS_WEIGHT * stopped.excess_deg
+
+    found: dict[str, tuple[Verdict, StopVerdict]] = {}
     for path in sorted(out.glob("policy_*.npz")):
-        found[path.name] = attempt(load_policy(path), CHOICE, seed=CHOICE_SEED, threads=threads)
-        print(f"{path.name}: {found[path.name].falls_per_hour:.1f} falls an hour", flush=True)
+        found[path.name] = walked, stopped = tried(load_policy(path), CHOICE, CHOICE_SEED)
+        print(f"{path.name}: {walked.falls_per_hour:.1f} falls an hour, {stopped}", flush=True)
     # Of equals the one that has learnt longest.
-    best = min(reversed(found), key=lambda name: found[name].falls_per_hour)
-    judged = attempt(load_policy(out / best), JUDGEMENT, seed=JUDGEMENT_SEED, threads=threads)
+    best = min(reversed(found), key=cost)
+    judged = tried(load_policy(out / best), JUDGEMENT, JUDGEMENT_SEED)
     report = {
         "chosen": best,
-        "choice": {name: told(verdict) for name, verdict in found.items()},
-        "judgement": told(judged),
+        "choice": {name: told(*both) for name, both in found.items()},
+        "judgement": told(*judged),
     }
     with replacing(out / "choice.json") as temporary:
         temporary.write_text(json.dumps(report, indent=1) + "\n")
     with replacing(out / "walker.npz") as temporary:
         temporary.write_bytes((out / best).read_bytes())
-    print(f"{best} chosen; on other courses {judged.falls_per_hour:.1f} falls an hour", flush=True)
+    print(
+        f"{best} chosen; on other courses {judged[0].falls_per_hour:.1f} falls an hour, {judged[1]}",
+        flush=True,
+    )
 
 
 def main() -> None:
@@ -193,9 +236,17 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--samples", type=float, default=14e6, help="control steps to learn from")
     parser.add_argument("--generations", type=int, default=160, help="of CMA-ES for the feedback gains")
+    parser.add_argument("--start", type=Path, help="a walker.npz that learns on, instead of nothing")
     parser.add_argument("--threads", type=int, default=2, help="for the physics")
     arguments = parser.parse_args()
-    train(arguments.out, arguments.seed, int(arguments.samples), arguments.generations, arguments.threads)
+    train(
+        arguments.out,
+        arguments.seed,
+        int(arguments.samples),
+        arguments.generations,
+        arguments.threads,
+        arguments.start,
+    )
     choose(arguments.out, arguments.threads)
 
 

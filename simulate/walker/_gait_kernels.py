@@ -85,7 +85,8 @@ def servo(s, ref, j, hip, knee, stagger):  # type: ignore[no-untyped-def]
     # The legs' rotation axes are mirrored: outwards is negative.
     toe_out = ref.toe_out_right[j] * s.varied[TOE_OUT_RIGHT] + ref.toe_out_left[j] * s.varied[TOE_OUT_LEFT]
     offset = -ref.adduction[j] * (s.varied[WIDTH] / _LEG_LENGTH) - toe_out
-    standing = ref.standing[j] + stagger * s.stagger * ref.stagger[j] + s.spread * ref.spread[j] - toe_out
+    turned_out = ref.toe_out_right[j] * s.out_right + ref.toe_out_left[j] * s.out_left
+    standing = ref.standing[j] + stagger * s.stagger * ref.stagger[j] + s.spread * ref.spread[j] - turned_out
     return factor, offset, standing, s.grade_forward * ref.ankles[j] + s.grade_left * ref.subtalar[j]
 
 

@@ -1,10 +1,12 @@
-"""Compiled: the first step. The weight goes to one foot, the other one steps, and a loaded foot lies still.
+"""Compiled: the first and the last step, through which a loaded foot lies still.
 
 Laws in terms of one walker `s` (see state.py). People take half a second to shift their weight before the
 first foot leaves the ground. Until that foot lands, the torques of a loaded foot's ankle and hip rotation are
 kept within what leaves the pressure under the sole, and the sole where it is: the gait, made for mid-walk,
 would else rock the foot on to its heel and twist it. After a stop the feet stand one before the other and
-apart; from there such a slow first step falls more often than the gait's quick one, which is kept there.
+apart; from there a shift of the weight falls more often than the gait's own step, so the body is only let
+fall forwards, and the ankle of the foot that steps is free. While stopping only the twist is bounded: the
+ankle brakes.
 """
 
 from __future__ import annotations
@@ -21,11 +23,17 @@ from footfall.simulate.walker._elementwise import choose, clip
 _SIDEWAYS, _FORWARDS = 0.10, 0.15
 _SHIFT_S, _LONGEST_S, _SHORTEST_S = 0.40, 0.50, 0.1
 _UNLOADED = 0.25
+_LEAN_S = 0.36  # after a stop
+# Of a step: from then on the foot that it stands on lies flat; until then the other one may come to stay.
+_FLAT, _LEAVING = 0.15, 0.25
 _LIFTED = 0.2  # body weights; a foot that carries less may do what a swinging foot does
 _LANDED, _LATEST = 0.05, 0.3  # body weights on it, or so far into the next step, end the first one
 # Lever arms (m) of a loaded foot's torques over the force on it: its centre of pressure stays so far
 # before the ankle and so near its middle line, and what turns it is a sixth of what friction can hold.
 _BACK, _FRONT = 0.005, 0.10
+_BACK_AFTER_A_STOP, _FRONT_AFTER_A_STOP, _ASIDE_AFTER_A_STOP = -0.01, 0.12, 0.04
+# A slope asks for more, or twice as many would fall when they stop across one of 8 %.
+_TURN_ON_SLOPES = 0.12
 _ASIDE, _TURN = 0.02, 0.01
 
 _PUSH_ASIDE = mask("hip_adduction_r") - mask("hip_adduction_l")
@@ -54,21 +62,22 @@ def loads(s):  # type: ignore[no-untyped-def]
 @register_jitable
 def set_out(s, wish, step_phase):  # type: ignore[no-untyped-def]
     """Shift the weight of who stands and wishes to walk; True once the first step may begin."""
-    shifts = as_placed(s) & s.closing & (s.gate <= 0) & wish
-    s.left_first = choose(shifts, s.left_stance, s.left_first)
+    begins = s.closing & (s.gate <= 0) & wish
+    s.left_first = choose(begins, s.left_stance, s.left_first)
     right, left = loads(s)
     stepping = choose(s.left_first, right, left)
     landed = (s.left_stance != s.left_first) & ((stepping > _LANDED * s.weight) | (step_phase > _LATEST))
-    s.setting_out = shifts | (s.setting_out & np.logical_not(s.closing | landed))
-    s.shift = choose(shifts, s.shift + s.dt, choose(s.setting_out, s.shift, 0.0))
+    s.setting_out = begins | (s.setting_out & np.logical_not(s.closing | landed))
+    s.shift = choose(begins, s.shift + s.dt, choose(s.setting_out, s.shift, 0.0))
     unloaded = (s.shift > _SHORTEST_S) & (stepping < _UNLOADED * s.weight)
-    return wish & (unloaded | (s.shift > _LONGEST_S) | np.logical_not(shifts))
+    ready = choose(as_placed(s), unloaded | (s.shift > _LONGEST_S), s.shift > _LEAN_S)
+    return wish & (ready | np.logical_not(begins))
 
 
 @register_jitable
 def shifted(s, j):  # type: ignore[no-untyped-def]
     """Offset (rad) of servo j's target in standing that shifts the weight."""
-    aside = choose(s.left_first, -_SIDEWAYS, _SIDEWAYS)
+    aside = choose(as_placed(s), choose(s.left_first, -_SIDEWAYS, _SIDEWAYS), 0.0)
     return np.minimum(s.shift / _SHIFT_S, 1.0) * (aside * _PUSH_ASIDE[j] + _FORWARDS * _LET_FALL[j])
 
 
@@ -83,19 +92,32 @@ def bound(s, ref, out, held, servo, joint, low, high):  # type: ignore[no-untype
 
 
 @register_jitable
-def bound_foot(s, ref, out, stands, load, servo, joint):  # type: ignore[no-untyped-def]
-    """`bound` what acts on one foot; `servo`, `joint`: the first of its leg."""
-    held = s.setting_out & (stands | (load > _LIFTED * s.weight))
+def bound_foot(s, ref, out, stands, stance, load, servo, joint):  # type: ignore[no-untyped-def]
+    """`bound` what acts on one foot; `servo`, `joint`: the first of its leg.
+
+    `stands`: through the first step; `stance`: by the phase of the gait.
+    """
+    loaded, placed, step = load > _LIFTED * s.weight, as_placed(s), (s.phase * 2) % 1
+    held = s.setting_out & (stands | (loaded & placed))
+    # A foot that the last step unloads must not turn either.
+    rests = s.closing | choose(stance, loaded & (step > _FLAT), step < _LEAVING)
+    lies = (s.setting_out & (stands | loaded)) | (s.stopping & rests)
     force = np.maximum(load, _LIFTED * s.weight)
-    turn, aside = _TURN * force, _ASIDE * force
-    bound(s, ref, out, held, servo + _ANKLE, joint + _ANKLE, -_FRONT * force, -_BACK * force)
-    bound(s, ref, out, held, servo + _ROTATION, joint + _ROTATION, -turn, turn)
+    first = s.setting_out & placed
+    slope = np.sqrt(s.grade_forward * s.grade_forward + s.grade_left * s.grade_left)
+    turn = (_TURN + choose(first, 0.0, _TURN_ON_SLOPES * slope)) * force
+    aside = choose(first, _ASIDE, _ASIDE_AFTER_A_STOP) * force
+    front = choose(first, _FRONT, _FRONT_AFTER_A_STOP) * force
+    back = choose(first, _BACK, _BACK_AFTER_A_STOP) * force
+    bound(s, ref, out, held, servo + _ANKLE, joint + _ANKLE, -front, -back)
     bound(s, ref, out, held, servo + _SUBTALAR, joint + _SUBTALAR, -aside, aside)
+    bound(s, ref, out, lies, servo + _ROTATION, joint + _ROTATION, -turn, turn)
 
 
 @register_jitable
 def hold_feet(s, ref, out):  # type: ignore[no-untyped-def]
-    """Bound the servo targets `out` (k, 17) of who sets out so that loaded feet lie still."""
+    """Bound the servo targets `out` (k, 17) of who sets out or stops so that loaded feet lie still."""
     right, left = loads(s)
-    bound_foot(s, ref, out, np.logical_not(s.left_first), right, _RIGHT, _RIGHT_JOINT)
-    bound_foot(s, ref, out, s.left_first, left, _LEFT, _LEFT_JOINT)
+    stands, stance = np.logical_not(s.left_first), np.logical_not(s.left_stance)
+    bound_foot(s, ref, out, stands, stance, right, _RIGHT, _RIGHT_JOINT)
+    bound_foot(s, ref, out, s.left_first, s.left_stance, left, _LEFT, _LEFT_JOINT)

@@ -62,6 +62,9 @@ WALKER = np.dtype(
         ("closing", bool),  # has decided to stand, or stands
         ("stagger", float),  # rad, pose of the standing feet: one before the other
         ("spread", float),  # rad, apart
+        ("out_right", float),  # rad, turned out
+        ("out_left", float),
+        ("stopping", bool),  # wishes to stand and is nearly there, or stands; not on steep slopes
         # setting out
         ("weight", float),  # N
         ("setting_out", bool),  # from the wish to walk in a stand until the first step has landed

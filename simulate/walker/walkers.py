@@ -35,6 +35,9 @@ N_ACTION = body.N_SERVOS
 # where the ground slopes, the planes that the feet tread on.
 _CONTROL, _FORCE = int(mujoco.mjtState.mjSTATE_CTRL), int(mujoco.mjtState.mjSTATE_XFRC_APPLIED)
 _PLANES = int(mujoco.mjtState.mjSTATE_MOCAP_POS | mujoco.mjtState.mjSTATE_MOCAP_QUAT)
+# A standing foot would creep by tenths of a millimetre a second, on a slope by millimetres, and under the
+# torques of the first and the last step it would turn by some degrees.
+_NOSLIP_ITERATIONS = 4
 
 
 class Trace(NamedTuple):
@@ -202,6 +205,8 @@ class Walkers:
         self._state["residual"][mask] = 0
         self.mean_velocity[mask] = np.stack([speed, np.zeros(m)], 1)
         self._state["stagger"][mask] = self._state["spread"][mask] = 0
+        self._state["out_right"][mask] = self._state["out_left"][mask] = toe_out[:, 0]
+        self._state["stopping"][mask] = False
         self.variability.place(mask, variability, habits)
         self.gate.value[mask], self.gate.closing[mask] = np.where(standing, 0.0, 1.0), standing
         self.setting_out[mask], self._state["shift"][mask] = False, 0
@@ -226,8 +231,8 @@ class Walkers:
 
     @property
     def steady(self) -> np.ndarray:
-        """(n,) bool: stops, stands or sets out, so that its loaded feet should lie still."""
-        steady: np.ndarray = self.gate.closing | self.setting_out
+        """(n,) bool: comes to a stand, stands or sets out, so that its loaded feet should lie still."""
+        steady: np.ndarray = self.gate.closing | self.setting_out | self._state["stopping"]
         return steady
 
     def _find_ground(self, position: np.ndarray, sensor: np.ndarray) -> None:
@@ -309,6 +314,12 @@ class Walkers:
         """(n,) bool: down, toppled, turned away from the commanded heading, or not finite."""
         copy: np.ndarray = self._state["fallen"].copy()
         return copy
+
+
+def grip(walkers: Walkers) -> None:
+    """Let the soles of walkers that are steady not creep in the next control step."""
+    for model, steady in zip(walkers.models, walkers.steady.tolist(), strict=True):
+        model.opt.noslip_iterations = _NOSLIP_ITERATIONS if steady else 0
 
 
 def _distinct(models: Sequence[mujoco.MjModel]) -> Sequence[mujoco.MjModel]:

@@ -286,7 +286,7 @@ def test_a_first_step_is_cut_where_a_foot_leaves_the_ground() -> None:
     pitch[0, 599] = -1.9  # the last run of samples in which the toes only sink begins here
     pitch[1] = np.interp(t, [0.8, 1.0, 1.1, 1.3], [0, 0.7, 0.2, -30])
     yaw[1] = np.interp(t, [1.0, 1.1, 1.2], [0, 0.4, 9])
-    right, left = starts.set_out("start", yaw, pitch, load)
+    right, left = starts.set_out("start", yaw, pitch, load, 0.001)
     assert (right.side, right.first, left.side, left.first) == ("r", True, "l", False)
     assert right.twist == pytest.approx(1.5, abs=0.02)
     assert right.up == pytest.approx(1.0)
