@@ -16,16 +16,18 @@ class InputError(ValueError):
     ----------
     message : what is wrong, and what was expected
     subject : the culprit; None where the message names it
+    more : lines that the command line prints below the sentence, such as a table of what was found
 
     Attributes
     ----------
-    message, subject : as given, the subject as text
+    message, subject, more : as given, the subject as text
     """
 
-    def __init__(self, message: str, subject: str | os.PathLike[str] | None = None) -> None:
+    def __init__(self, message: str, subject: str | os.PathLike[str] | None = None, more: str = "") -> None:
         self.message = message
         self.subject = None if subject is None else os.fspath(subject)
-        super().__init__(message, self.subject)  # with these, a process hands it to another
+        self.more = more
+        super().__init__(message, self.subject, more)  # with these, a process hands it to another
 
     def __str__(self) -> str:
         return self.message if self.subject is None else f"{self.subject}: {self.message}"
@@ -40,4 +42,4 @@ class InputError(ValueError):
         """
         subject = os.fspath(subject)
         known = self.subject in (subject, *instead_of)
-        return type(self)(self.message if known else str(self), subject)
+        return type(self)(self.message if known else str(self), subject, self.more)

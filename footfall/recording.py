@@ -13,7 +13,7 @@ import numpy as np
 from footfall.columns import ACCEL, GYRO, POSITION, QUATERNION, RECORDING
 from footfall.errors import InputError
 from footfall.identity import content_digest
-from footfall.tables import read_table, require_columns, write_table
+from footfall.tables import read_table, require_columns, write_csv, write_table
 
 
 @dataclass(frozen=True)
@@ -85,12 +85,21 @@ class Recording:
 
 def write_recording(recording: Recording, path: str | os.PathLike[str]) -> None:
     """Write `recording` to Parquet: t, gyro_x..z, accel_x..z, and temperature where there is one."""
+    write_table(path, _columns(recording), RECORDING, recording.meta)
+
+
+def write_recording_csv(recording: Recording, path: str | os.PathLike[str]) -> None:
+    """The same as text, without the provenance."""
+    write_csv(path, _columns(recording))
+
+
+def _columns(recording: Recording) -> dict[str, np.ndarray]:
     columns = {"t": recording.t}
     columns |= {name: recording.gyro[:, i] for i, name in enumerate(GYRO)}
     columns |= {name: recording.accel[:, i] for i, name in enumerate(ACCEL)}
     if recording.temperature is not None:
         columns["temperature"] = recording.temperature
-    write_table(path, columns, RECORDING, recording.meta)
+    return columns
 
 
 def is_truth(names: Iterable[str]) -> bool:

@@ -85,6 +85,13 @@ def write_table(
         )
 
 
+def write_csv(path: str | os.PathLike[str], columns: Columns) -> None:
+    """Write equally long one-dimensional columns to CSV, without units and provenance."""
+    table = pa.table({name: _array(values) for name, values in columns.items()})
+    with replacing(path) as temporary:
+        pa_csv.write_csv(table, temporary, pa_csv.WriteOptions(quoting_style="none"))
+
+
 def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """Read a Parquet or (by its ending) CSV file.
 

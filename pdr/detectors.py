@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -23,6 +23,7 @@ from footfall.conventions import GRAVITY
 from footfall.errors import InputError
 from footfall.late import late
 from footfall.pdr.stance import Detector, ThresholdDetector, compact
+from footfall.runs import runs
 from footfall.settings import require, setting
 
 _detection = late("footfall.pdr._detection")
@@ -217,6 +218,46 @@ class Adaptive:
         return np.interp(t, every, np.maximum(high, max(self.held * high.max(), least)))
 
 
+@dataclass(frozen=True)
+class Patient:
+    """Threshold; where that finds no rest for longer than a swing lasts, adaptive, ever less demanding.
+
+    Where the thresholds find every stance the scores are theirs; people who walk faster than those allow have
+    theirs found all the same.
+
+    Attributes
+    ----------
+    threshold, adaptive : the two detectors
+    longest_s : s between rests that one swing may last; slow walkers' lasts 1.1 s
+    """
+
+    threshold: ThresholdDetector = field(default_factory=ThresholdDetector)
+    adaptive: Adaptive = field(default_factory=Adaptive)
+    longest_s: float = setting(1.2, unit="s", gt=0)
+
+    def __post_init__(self) -> None:
+        require("patient", self)
+
+    def __call__(self, t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
+        score = self.threshold(t, gyro, accel)
+        if len(t) < 2 or not len(self._movements(t, score)):
+            return score
+        other = self.adaptive(t, gyro, accel)
+        score = score.copy()
+        for less in LESS_DEMANDING:
+            for first, stop in self._movements(t, score):
+                score[first:stop] = np.minimum(score[first:stop], other[first:stop] / less)
+        return score
+
+    def _movements(self, t: np.ndarray, score: np.ndarray) -> np.ndarray:
+        """(k, 2) rows between rests that are further apart than a swing lasts."""
+        rests = runs(score < 1.0)
+        rests = rests[t[rests[:, 1] - 1] - t[rests[:, 0]] >= LEAST_REST_S]
+        edges = np.concatenate([[0], rests.ravel(), [len(t)]]).reshape(-1, 2)
+        ends = np.minimum(edges[:, 1], len(t) - 1)
+        return edges[t[ends] - t[np.minimum(edges[:, 0], len(t) - 1)] > self.longest_s]
+
+
 def _ninth(size: np.ndarray) -> float:
     """The 90th percentile; 0 of nothing, in a gap."""
     place = int(0.9 * (len(size) - 1))
@@ -225,6 +266,8 @@ def _ninth(size: np.ndarray) -> float:
 
 SWING_RATE = 2.0  # rad/s
 SWING_FORCE = 4.0  # m/s2
+LESS_DEMANDING = (1.0, 1.6, 2.5)  # by which the adaptive detector's thresholds grow
+LEAST_REST_S = 0.1  # shorter moments of rest are none, as for `StanceParams`
 
 DETECTORS: Mapping[str, Detector] = MappingProxyType(
     {
@@ -234,6 +277,7 @@ DETECTORS: Mapping[str, Detector] = MappingProxyType(
         "mv": MovingVariance(),
         "mag": Magnitude(),
         "adaptive": Adaptive(),
+        "patient": Patient(),
     }
 )
 

@@ -187,15 +187,17 @@ def placed(t: np.ndarray, quaternion: np.ndarray, position: np.ndarray, start: S
     return Footfalls.at(t, position, heading_of(quaternion) + start.heading)
 
 
-def detect(recording: Recording, params: PdrParams) -> Detected:
+def detect(recording: Recording, params: PdrParams, rest: Rest | None = None) -> Detected:
     """Find the still start and the stances after it.
+
+    rest : where the walk begins, where that is known already
 
     Raises
     ------
     InputError
         No rest at the start, no stride after it, or a hole in the samples that is too long.
     """
-    rest = static_bias(recording, params.bias_s)
+    rest = rest or static_bias(recording, params.bias_s)
     score = scores(recording, rest, params.detector, still=rest.last)
     stances = _stances_after(rest, find_stances(recording.t[1:], score[1:], params.stance))
     if len(stances.footfalls) < 2:

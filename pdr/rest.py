@@ -27,11 +27,15 @@ class Rest:
     gyro_bias : (3,) rad/s, the static bias eps0 as a vector in the body (HDR Eq. 1)
     force : (3,) m/s2, mean specific force: which way is up
     last : index of the last sample that was averaged
+    bias_sd : rad/s, how well the bias is known; 0 where nobody asked
+    source : what the bias was taken from, in words
     """
 
     gyro_bias: np.ndarray
     force: np.ndarray
     last: int
+    bias_sd: float = 0.0
+    source: str = ""
 
 
 def static_bias(recording: Recording, bias_s: float) -> Rest:
@@ -49,7 +53,8 @@ def static_bias(recording: Recording, bias_s: float) -> Rest:
     length = recording.t[-1] - recording.t[0]
     if length < bias_s - 1e-6:
         raise InputError(
-            f"lasts {length:.4g} s, shorter than the {bias_s:g} s at rest for the static bias", "recording"
+            f"lasts {length:.4g} s, shorter than the {bias_s:g} s at rest for the static bias (--bias-time)",
+            "recording",
         )
     # Row 0 is the start: its sample belongs to time before the record.
     rows = slice(1, int(np.searchsorted(recording.t - recording.t[0], bias_s + 1e-6)))
@@ -64,7 +69,7 @@ def static_bias(recording: Recording, bias_s: float) -> Rest:
         if moved is not None:
             raise InputError(
                 f"the IMU moves at t = {block[edges[moved]] * REST_BLOCK_S:g} s ({name}), "
-                f"but the static bias needs the first {bias_s:g} s at rest",
+                f"but the static bias needs the first {bias_s:g} s at rest (--bias-time)",
                 "recording",
             )
     rest = Rest(gyro_bias=gyro.mean(axis=0), force=accel.mean(axis=0), last=rows.stop - 1)
@@ -106,7 +111,9 @@ def still_time(recording: Recording, most_s: float = BIAS_TIME) -> float:
     whole = min(most_s, float(t[-1]), *(REST_BLOCK_S * (used[found] - 1) for found in moved))
     if whole < REST_BLOCK_S:
         raise InputError(
-            f"the IMU moves from the start, but dead reckoning needs {REST_BLOCK_S:g} s at rest", "recording"
+            f"the IMU moves from the start, but dead reckoning needs {REST_BLOCK_S:g} s at rest "
+            "(--bias-time)",
+            "recording",
         )
     return float(whole)
 

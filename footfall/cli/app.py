@@ -17,7 +17,9 @@ from footfall import __version__
 from footfall.cli.allan import allan
 from footfall.cli.cache import cache
 from footfall.cli.check import check
+from footfall.cli.convert import convert
 from footfall.cli.export import export
+from footfall.cli.inspect import inspect
 from footfall.cli.list import list_
 from footfall.cli.parameters import parameters
 from footfall.cli.record import record
@@ -54,7 +56,9 @@ def _main(
         print(context.get_help())
 
 
-for command in (list_, parameters, run, walk, render, record, track, score, check, export, allan):
+for command in (
+    *(list_, parameters, run, walk, render, record, inspect, convert, track, score, check, export, allan),
+):
     app.command(command.__name__.rstrip("_"))(command)
 app.add_typer(cache, name="cache")
 

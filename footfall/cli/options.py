@@ -20,8 +20,8 @@ FormatOption = Annotated[
     str,
     typer.Option(
         "--format",
-        help="What wrote the recording: auto finds out; or footfall, xio (x-io), sensorconnect "
-        "(MicroStrain), openshoe, matlab (imu and ts), csv (columns like gyro_x_deg_s, accel_x_g).",
+        help="What wrote the recording: auto finds out; or a name as in docs/real_recordings.md, such as "
+        "footfall, xio, xsens, ros, matlab, csv.",
     ),
 ]
 UnitOption = Annotated[
@@ -35,6 +35,21 @@ UnitOption = Annotated[
 RateOption = Annotated[
     float | None,
     typer.Option("--rate", help="Samples per second (Hz), for a file without time.", callback=finite),
+]
+ColumnsOption = Annotated[
+    str | None,
+    typer.Option(
+        "--columns",
+        help="Names of a table's columns in order, in place of its own, - for one that is none: "
+        "t,gx,gy,gz,ax,ay,az.",
+        show_default=False,
+    ),
+]
+SensorOption = Annotated[
+    str | None,
+    typer.Option(
+        "--sensor", help="Which of several sensors in a file; listed if left out.", show_default=False
+    ),
 ]
 SetOption = Annotated[
     list[str] | None,

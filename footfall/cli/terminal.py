@@ -77,7 +77,7 @@ def perform(app: typer.Typer, arguments: list[str] | None) -> int:
     try:
         code = int(app(arguments, standalone_mode=False, prog_name="footfall") or 0)
     except InputError as error:
-        return _refuse(str(error))
+        return _refuse(str(error), error.more)
     except OSError as error:  # a full disk, say
         return _refuse(f"{error.filename}: {error.strerror}" if error.filename else str(error))
     except (typer.Abort, KeyboardInterrupt):  # either, by typer's version
@@ -90,6 +90,6 @@ def perform(app: typer.Typer, arguments: list[str] | None) -> int:
     return code
 
 
-def _refuse(sentence: str) -> int:
-    print(f"footfall: {sentence}", file=sys.stderr)
+def _refuse(sentence: str, more: str = "") -> int:
+    print(f"footfall: {sentence}" + (f"\n\n{more}" if more else ""), file=sys.stderr)
     return 2

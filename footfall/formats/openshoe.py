@@ -10,6 +10,7 @@ import numpy as np
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
+from footfall.formats.files import Content
 from footfall.formats.samples import TORN, Samples, Source
 
 TICKS = 19_660_800.0  # a second of the sensor's timer (3DM-GX2 communication protocol)
@@ -22,19 +23,20 @@ def is_openshoe(head: bytes) -> bool:
     return b"Inertial data." in head[:200] and b"a_x [g]" in head[:1000]
 
 
-def open_openshoe(path: Path) -> Source:
+def open_openshoe(content: Content) -> Source:
     """Open a file of OpenShoe's recorder: g, rad/s, and the sensor's own clock.
 
     The computer's stamps jitter by samples; the sensor's do not. Its sample number times the median step
     of its timer is the time.
     """
     notes: list[str] = []
-    return Source(path, "openshoe", path.stat().st_size // 230, _blocks(path, notes), notes=notes)
+    blocks = _blocks(content.path, content, notes)
+    return Source(content.path, "openshoe", content.size // 230, blocks, notes=notes)
 
 
-def _blocks(path: Path, notes: list[str]) -> Iterator[Samples]:
+def _blocks(path: Path, content: Content, notes: list[str]) -> Iterator[Samples]:
     start, interval, row, before = 0.0, 0.0, 0, -np.inf
-    with open(path, encoding="ascii", errors="replace") as file:
+    with open(content.at, encoding="ascii", errors="replace") as file:
         for line in file:
             if line.startswith("Header:"):
                 break

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
-from footfall.columns import GYRO
+from footfall.columns import ACCEL, GYRO
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
+from footfall.formats.samples import Samples
 from footfall.pdr.stance import moving_mean
 from footfall.pdr.strapdown import integrate
 from footfall.recording import Recording
@@ -34,16 +36,45 @@ _FORCES = (
 
 
 def check_alive(recording: Recording) -> None:
-    """Refuse a sensor that says nothing.
+    """Refuse a sensor that says nothing, whole or of one axis.
 
     Raises
     ------
     InputError
         Every row is the same.
     """
+    if len(recording.t) <= 10:
+        return
     for what, values in (("gyros", recording.gyro), ("accelerometers", recording.accel)):
-        if len(values) > 10 and (values == values[0]).all():
+        if (values == values[0]).all():
             raise InputError(f"the {what} say the same in every row: they recorded nothing", "recording")
+    for names, values in ((GYRO, recording.gyro), (ACCEL, recording.accel)):
+        for name, axis in zip(names, values.T, strict=True):
+            if (axis == axis[0]).all():
+                raise InputError(f"{name} says the same in every row: it recorded nothing", "recording")
+
+
+def likely_units(samples: Samples, unstated: frozenset[str], walk: bool) -> tuple[Samples, list[str]]:
+    """Samples in SI where nothing states their unit, and only another than SI is possible; and what to tell.
+
+    Accelerometers measure gravity at rest; what the gyros say must turn it (`check_walk`).
+    """
+    told: list[str] = []
+    if "accel" in unstated and len(samples) > 10:
+        force = resting_force(samples.t, samples.gyro, samples.accel)
+        for unit, size in (("g", GRAVITY), ("mg", GRAVITY / 1000)):
+            if abs(force * size - GRAVITY) <= GRAVITY_TOLERANCE:
+                samples = replace(samples, accel=samples.accel * size)
+                told.append(f"nothing states the accelerometers' unit: taken for {unit}")
+    if "gyro" in unstated and walk and len(samples) > 10:
+        recording = Recording(t=samples.t, gyro=samples.gyro, accel=samples.accel)
+        rests = rests_of(recording)
+        left = {size: misclosure(recording, rests, np.eye(3) * size) for size in (1.0, math.pi / 180, 1e-3)}
+        off, deg = left[1.0], left[math.pi / 180]
+        if off is not None and deg is not None and deg < off / 2 and deg < MISCLOSURE[1]:
+            samples = replace(samples, gyro=samples.gyro * (math.pi / 180))
+            told.append("nothing states the gyros' unit: taken for deg/s, with which gravity stays vertical")
+    return samples, told
 
 
 def check_values(recording: Recording, clipped: Mapping[str, int]) -> None:
@@ -75,9 +106,7 @@ def check_gravity(recording: Recording) -> None:
     InputError
         With the likely cause.
     """
-    still = _unrest(recording)
-    quiet = still <= np.quantile(still, 0.05)
-    force = float(np.median(np.linalg.norm(recording.accel[quiet], axis=1)))
+    force = resting_force(recording.t, recording.gyro, recording.accel)
     if abs(force - GRAVITY) > GRAVITY_TOLERANCE:
         cause = next((f": {text}" for size, text in _FORCES if abs(force - size) <= 0.1 * max(size, 1)), "")
         raise InputError(
@@ -87,7 +116,7 @@ def check_gravity(recording: Recording) -> None:
         )
 
 
-def check_walk(recording: Recording) -> None:
+def check_walk(recording: Recording) -> float | None:
     """Refuse what no walking foot can have measured.
 
     From one moment of rest to the next, turning the force with the gyros and taking gravity away must leave
@@ -95,6 +124,10 @@ def check_walk(recording: Recording) -> None:
     those of the accelerometers: median over strides, as a share of g. Of seven real walks right ones have
     .016-.037, wrong ones .06-1.
     (A sensor that gives -f instead of f passes: it is the mirror image of a possible walk.)
+
+    Returns
+    -------
+    That share; None where too few strides are seen.
 
     Raises
     ------
@@ -109,7 +142,7 @@ def check_walk(recording: Recording) -> None:
     spread = float(np.linalg.norm(recording.accel, axis=1).std())
     rms = math.sqrt(np.mean(recording.gyro**2) * 3)
     if spread < FORCE_SPREAD:
-        return  # nobody walks: dead reckoning will say so
+        return None  # nobody walks: dead reckoning will say so
     if not GYRO_RMS[0] <= rms <= GYRO_RMS[1]:
         cause = "deg/s" if rms > GYRO_RMS[1] else "rad/s, and were taken for deg/s"
         raise InputError(
@@ -119,7 +152,7 @@ def check_walk(recording: Recording) -> None:
     rests = rests_of(recording)
     off = misclosure(recording, rests, np.eye(3))
     if off is None or off <= MISCLOSURE[0]:
-        return
+        return off
     left = {cause: misclosure(recording, rests, change) or math.inf for cause, change in CHANGES.items()}
     likely = min(left, key=left.__getitem__)
     if left[likely] <= off / 2:
@@ -130,6 +163,7 @@ def check_walk(recording: Recording) -> None:
             "the gyros' unit or axes do not match the accelerometers'",
             "recording",
         )
+    return off
 
 
 CHANGES: Mapping[str, np.ndarray] = {
@@ -149,23 +183,30 @@ CHANGES: Mapping[str, np.ndarray] = {
 }
 
 
-def _unrest(recording: Recording) -> np.ndarray:
+def resting_force(t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> float:
+    """The force's norm where the IMU is stillest, in whatever unit."""
+    still = _unrest(t, gyro, accel)
+    quiet = still <= np.quantile(still, 0.05)
+    return float(np.median(np.linalg.norm(accel[quiet], axis=1)))
+
+
+def _unrest(t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
     """How unquiet the IMU is, in shares of its own RMS: whatever the units. (n,)"""
-    t = recording.t
 
     def share(x: np.ndarray) -> np.ndarray:
         mean = float(np.mean(x))
         return np.sqrt(np.maximum(moving_mean(x, t, STILL_S), 0) / mean) if mean else np.zeros_like(x)
 
-    turn = share((recording.gyro**2).sum(axis=1))
-    force = np.linalg.norm(recording.accel, axis=1)
+    turn = share((gyro**2).sum(axis=1))
+    force = np.linalg.norm(accel, axis=1)
     rest = np.median(force[turn <= np.quantile(turn, 0.1)])
     return turn + share((force - rest) ** 2)
 
 
 def rests_of(recording: Recording) -> np.ndarray:
     """Samples at the stillest instants, at least half a second apart."""
-    return lowest(_unrest(recording), REST, max(1, round(0.5 / recording.interval)))
+    unrest = _unrest(recording.t, recording.gyro, recording.accel)
+    return lowest(unrest, REST, max(1, round(0.5 / recording.interval)))
 
 
 def lowest(x: np.ndarray, most: float, apart: int) -> np.ndarray:

@@ -6,21 +6,26 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from footfall.errors import InputError
-from footfall.formats.condition import Findings, condition
+from footfall.formats.bags import ULOG, is_bag, open_bag, open_ulog
+from footfall.formats.condition import FILL_S, Findings, condition
+from footfall.formats.files import open_content
+from footfall.formats.hdf5 import HDF5, is_apdm, open_apdm
 from footfall.formats.layout import LAYOUTS
 from footfall.formats.matlab import is_matlab, open_matlab
 from footfall.formats.openshoe import is_openshoe, open_openshoe
-from footfall.formats.physics import check_alive, check_gravity, check_values, check_walk
+from footfall.formats.options import Reading
+from footfall.formats.phone import open_phone
+from footfall.formats.physics import check_alive, check_gravity, check_values, check_walk, likely_units
 from footfall.formats.samples import Samples, Source, joined
 from footfall.formats.table import open_table
 from footfall.recording import Recording
 
-FORMATS = ("auto", *LAYOUTS, "openshoe", "matlab")
+FORMATS = ("auto", *LAYOUTS, "openshoe", "matlab", "apdm", "ros-bag", "ulog", "phone")
 JUDGED_ROWS = 2000  # fewer tell nothing of a walk
 WHOLE_ROWS = 2_000_000  # near three hours at 200 Hz, 0.8 GiB with all that is made of them
-_HEAD_BYTES = 1 << 16
 
 
 def open_source(
@@ -28,6 +33,8 @@ def open_source(
     format: str = "auto",
     sizes: Mapping[str, float] | None = None,
     rate_hz: float | None = None,
+    *,
+    reading: Reading | None = None,
 ) -> Source:
     """Open a recording and find out its format.
 
@@ -37,30 +44,37 @@ def open_source(
     sizes : quantity -> size of its unit (`footfall.formats.units.parse_units`), for what the file leaves open
         or states wrongly
     rate_hz : samples per second, for a file without time
+    reading : these two, and what else may be said of a file
 
     Raises
     ------
     InputError
         No such file or format, unreadable, or without the columns it should have.
     """
-    source, sizes = Path(path), sizes or {}
+    source, reading = Path(path), reading or Reading()
+    reading = replace(reading, sizes=sizes or reading.sizes, rate_hz=rate_hz or reading.rate_hz)
     if format not in FORMATS:
         raise InputError(f"format {format!r} is unknown, expected one of {', '.join(FORMATS)}")
     if rate_hz is not None and rate_hz <= 0:
         raise InputError(f"rate = {rate_hz:g} Hz: expected a positive number")
-    if not source.is_file():
-        raise InputError("no such file", source)
-    with open(source, "rb") as file:
-        head = file.read(_HEAD_BYTES)
-    if not head:
-        raise InputError("empty", source)
+    if is_bag(source):
+        return open_bag(source, reading)
+    contents = open_content(source, reading.sensor)
+    if len(contents) > 1 or format == "phone":
+        return open_phone(source, contents, reading)
+    (content,) = contents
+    head = content.head
     if format == "openshoe" or (format == "auto" and is_openshoe(head)):
         if not is_openshoe(head):
             raise InputError("not a file of OpenShoe's recorder", source)
-        return open_openshoe(source)
-    if format == "matlab" or (format == "auto" and is_matlab(source, head)):
-        return open_matlab(source, sizes)
-    return open_table(source, head, format, sizes, rate_hz)
+        return open_openshoe(content)
+    if head.startswith(HDF5) and (format == "apdm" or (format == "auto" and is_apdm(content))):
+        return open_apdm(content, reading)
+    if format == "matlab" or (format == "auto" and is_matlab(content)):
+        return open_matlab(content, reading)
+    if format == "ulog" or head.startswith(ULOG):
+        return open_ulog(content, reading)
+    return open_table(content, format, reading)
 
 
 def read(
@@ -69,13 +83,14 @@ def read(
     *,
     sizes: Mapping[str, float] | None = None,
     rate_hz: float | None = None,
+    reading: Reading | None = None,
     walk: bool = True,
 ) -> tuple[Recording, Findings]:
     """Read a recording whole, mend its samples (`condition`) and judge it by physics.
 
     Parameters
     ----------
-    format, sizes, rate_hz : as in `open_source`
+    format, sizes, rate_hz, reading : as in `open_source`
     walk : whether a walking foot is expected; False for a sensor at rest
 
     Returns
@@ -88,10 +103,11 @@ def read(
         What `open_source`, `condition` and the checks of `footfall.formats.physics` refuse; or a walk of more
         than `WHOLE_ROWS` rows.
     """
-    return read_source(open_source(path, format, sizes, rate_hz), walk=walk)
+    source = open_source(path, format, sizes, rate_hz, reading=reading)
+    return read_source(source, walk=walk, gap_s=(reading or Reading()).gap_s)
 
 
-def read_source(source: Source, *, walk: bool = True) -> tuple[Recording, Findings]:
+def read_source(source: Source, *, walk: bool = True, gap_s: float = FILL_S) -> tuple[Recording, Findings]:
     """`read` of a file that is open: its samples are read now, and once.
 
     Raises
@@ -102,13 +118,23 @@ def read_source(source: Source, *, walk: bool = True) -> tuple[Recording, Findin
     if walk and source.rows > WHOLE_ROWS:
         raise InputError(f"{source.rows} rows, expected at most {WHOLE_ROWS} to hold at once", source.path)
     try:
-        samples, findings = condition(joined(source.blocks), source.format)
-        findings = replace(findings, notes=tuple(source.notes))
+        samples = joined(source.blocks)
+        # A simulated IMU loses nothing, and one without noise repeats itself at rest.
+        samples, findings = condition(
+            samples, source.format, gap_s=gap_s, doubted=not is_simulated(source.meta)
+        )
+        samples, told = likely_units(samples, source.unstated, walk)
+        findings = replace(findings, notes=(*source.notes, *told))
         recording = as_recording(samples, source, findings)
-        judge(recording, findings, walk)
+        findings = replace(findings, misclosure_g=judge(recording, findings, walk))
     except InputError as error:
         raise error.about(source.path, "recording") from None
     return recording, findings
+
+
+def is_simulated(meta: Mapping[str, Any]) -> bool:
+    """Whether a recording's metadata tell that a simulated walk was recorded."""
+    return "start" in meta
 
 
 class Blocks:
@@ -120,6 +146,7 @@ class Blocks:
     Parameters
     ----------
     source : opened; it is run through once
+    gap_s : s, the longest hole in a swing that is filled
 
     Raises
     ------
@@ -127,8 +154,8 @@ class Blocks:
         While it is run through, as `read`.
     """
 
-    def __init__(self, source: Source) -> None:
-        self.source = source
+    def __init__(self, source: Source, gap_s: float = FILL_S) -> None:
+        self.source, self.gap_s = source, gap_s
         self._found: Findings | None = None
 
     @property
@@ -149,7 +176,13 @@ class Blocks:
                 if len(samples) < 4:
                     seam = samples
                     continue
-                samples, found = condition(samples, self.source.format, whole=False)
+                samples, found = condition(
+                    samples,
+                    self.source.format,
+                    whole=False,
+                    gap_s=self.gap_s,
+                    doubted=not is_simulated(self.source.meta),
+                )
                 again = replace(found, rows=len(block))
                 self._found = again if self._found is None else merged(self._found, again)
                 if len(samples) >= JUDGED_ROWS:
@@ -181,8 +214,8 @@ def as_recording(samples: Samples, source: Source, findings: Findings) -> Record
     )
 
 
-def judge(recording: Recording, findings: Findings, walk: bool) -> None:
-    """Every check of `footfall.formats.physics` that applies.
+def judge(recording: Recording, findings: Findings, walk: bool) -> float | None:
+    """Every check of `footfall.formats.physics` that applies; returns what `check_walk` does.
 
     Raises
     ------
@@ -193,8 +226,7 @@ def judge(recording: Recording, findings: Findings, walk: bool) -> None:
         check_alive(recording)
     check_values(recording, dict(findings.clipped))
     check_gravity(recording)
-    if walk:
-        check_walk(recording)
+    return check_walk(recording) if walk else None
 
 
 def merged(first: Findings, second: Findings) -> Findings:
@@ -202,11 +234,16 @@ def merged(first: Findings, second: Findings) -> Findings:
     clipped = dict(first.clipped)
     for name, count in second.clipped:
         clipped[name] = clipped.get(name, 0) + count
+    shift = first.rows / first.rate_hz if first.rate_hz else 0.0
     return replace(
         first,
         rows=first.rows + second.rows,
         empty=first.empty + second.empty,
         doubled=first.doubled + second.doubled,
+        disordered=first.disordered + second.disordered,
+        lost=first.lost.and_also(second.lost),
+        slower=first.slower or second.slower,
+        doubtful=(*first.doubtful, *((shift + a, shift + b) for a, b in second.doubtful)),
         filled=first.filled + second.filled,
         longest_gap_s=max(first.longest_gap_s, second.longest_gap_s),
         jitter_pct=max(first.jitter_pct, second.jitter_pct),

@@ -54,6 +54,7 @@ class Source:
     blocks : its samples, in order; may be run through once
     meta : what the file says of its origin
     notes : filled while the blocks are run through: what was wrong with the file itself
+    unstated : quantities whose unit nothing says, "gyro" or "accel": physics may tell
     """
 
     path: Path
@@ -62,6 +63,7 @@ class Source:
     blocks: Iterator[Samples]
     meta: Mapping[str, Any] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    unstated: frozenset[str] = frozenset()
 
 
 def joined(blocks: Iterator[Samples]) -> Samples:

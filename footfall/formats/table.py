@@ -1,12 +1,10 @@
-"""CSV and Parquet, read in blocks: memory holds one block, however long the file."""
+"""CSV and Parquet: which columns are meant, and their numbers as samples, block by block."""
 
 from __future__ import annotations
 
-import csv
 import json
-import os
-import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,186 +12,314 @@ import numpy as np
 
 from footfall.columns import ACCEL, GYRO
 from footfall.errors import InputError
-from footfall.formats.layout import LAYOUTS, Layout
-from footfall.formats.samples import TORN, Samples, Source
+from footfall.formats.dialect import Dialect, find_dialect
+from footfall.formats.explain import not_understood
+from footfall.formats.files import HEAD_BYTES, Content
+from footfall.formats.layout import Header, Layout, find_layouts
+from footfall.formats.options import Reading
+from footfall.formats.samples import Samples, Source
+from footfall.formats.stamps import DAY, Clock, is_stamp, likely_unit, seconds
+from footfall.formats.text import Batch, TextTable, floats, row_bytes
+from footfall.formats.units import UNITS
 from footfall.late import late
 from footfall.recording import refuse_truth
-from footfall.tables import META_KEY, numbers
+from footfall.tables import META_KEY
 
-pa, pa_csv, pq = late("pyarrow"), late("pyarrow.csv"), late("pyarrow.parquet")
+pa, pq = late("pyarrow"), late("pyarrow.parquet")
 
-BLOCK_BYTES = 1 << 22
 BLOCK_ROWS = 1 << 16
 PAGE_BYTES = 1 << 18
-_HEADER_BYTES = 1 << 16
+MOST_SENSORS = 20
 
 
-def open_table(
-    path: Path, head: bytes, name: str, sizes: Mapping[str, float], rate_hz: float | None
-) -> Source:
-    """Open a CSV or Parquet file.
+@dataclass(frozen=True)
+class Opened:
+    """A table whose columns are known.
 
-    Parameters
+    Attributes
     ----------
-    head : the file's first bytes
-    name : the format, a key of `LAYOUTS`, or "auto"
-    sizes : quantity -> size of its unit, from flags; they win over what a column's name says
-    rate_hz : for a file without time
+    header : names, units and preamble
+    dialect : of a text; None of Parquet
+    file : Arrow's, of Parquet
+    rows : cells of its first rows
+    """
+
+    content: Content
+    header: Header
+    dialect: Dialect | None = None
+    file: Any = None
+    rows: tuple[tuple[str, ...], ...] = ()
+
+
+def open_header(content: Content, columns: Sequence[str]) -> Opened:
+    """Names, units and first rows of a CSV or Parquet file.
+
+    columns : names in place of those that the file has; () for its own
 
     Raises
     ------
     InputError
-        Not readable, without the columns of that format, or the truth of a walk.
+        Not a readable table, or more names than columns.
     """
-    parquet = head.startswith(b"PAR1")
-    if parquet:
-        file, names = _open_parquet(path)
-        meta, rows = _meta(path, file), file.metadata.num_rows
-    else:
-        delimiter, names = _header(head)
-        meta, rows = {}, path.stat().st_size // max(_row_bytes(head), 1)
-    refuse_truth(path, names)
-    layout = _layout(path, names, name)
+    if content.head.startswith(b"PAR1"):
+        file, names = _open_parquet(content)
+        rows = _first_rows(file)
+        return Opened(content, Header(_renamed(content.path, names, columns)), file=file, rows=rows)
+    dialect = find_dialect(content.head, whole=len(content.head) < HEAD_BYTES)
+    if dialect is None:
+        raise InputError("no table of numbers, text or binary, that any known format has", content.path)
+    own = dialect.names or ("",) * dialect.width
+    header = Header(_renamed(content.path, own, columns), dialect.units, dialect.preamble)
+    return Opened(content, header, dialect, rows=dialect.rows)
+
+
+def _renamed(path: Path, own: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:
+    if not columns:
+        return tuple(own)
+    if len(columns) > len(own):
+        raise InputError(f"{len(columns)} names were given for {len(own)} columns", path)
+    named = ["" if name in ("-", "_", "") else name for name in columns]
+    return (*named, *[""] * (len(own) - len(columns)))
+
+
+def open_table(content: Content, name: str, reading: Reading) -> Source:
+    """Open a CSV or Parquet file.
+
+    Parameters
+    ----------
+    name : the format, a key of `LAYOUTS`, or "auto"
+
+    Raises
+    ------
+    InputError
+        Not readable, without the columns of that format, several sensors and none chosen, or the truth of a
+        walk.
+    """
+    opened = open_header(content, reading.columns)
+    refuse_truth(content.path, opened.header.names)
+    found = find_layouts(content.path, opened.header, name)
+    if not found:
+        raise not_understood(content.path, opened.header, opened.rows, name)
+    layout = chosen(content.path, found, reading.sensor)
+    rate_hz = reading.rate_hz or layout.rate_hz
     if "t" not in layout.columns and rate_hz is None:
-        raise InputError("no column of time, and no rate (Hz) was given instead", path)
-    wanted = [*layout.columns.values(), *layout.valid]
+        raise InputError("no column of time, and no rate (Hz) was given instead (--rate)", content.path)
+    if reading.rate_hz is not None:
+        layout = replace(layout, columns={k: v for k, v in layout.columns.items() if k != "t"}, finer="")
+    reading = replace(reading, rate_hz=rate_hz)
     notes: list[str] = []
-    batches = _parquet(path, file, wanted) if parquet else _csv(path, delimiter, names, wanted, notes)
-    return Source(path, layout.format, rows, _samples(batches, layout, sizes, rate_hz), meta, notes)
+    blocks = _Rows(opened, layout, reading, notes)
+    unstated = frozenset(
+        kind for kind in ("gyro", "accel") if kind not in reading.sizes and layout.sizes[f"{kind}_x"] is None
+    )
+    meta = _meta(content.path, opened.file) if opened.file is not None else {}
+    if opened.file is not None:
+        rows = opened.file.metadata.num_rows
+    else:
+        assert opened.dialect is not None
+        rows = content.size // row_bytes(content.head, opened.dialect)
+    return Source(content.path, layout.format, rows, iter(blocks), meta, notes, unstated)
 
 
-def _layout(path: Path, names: Sequence[str], name: str) -> Layout:
-    tried = LAYOUTS.values() if name == "auto" else [LAYOUTS[name]]
-    for layout in tried:
-        if (found := layout(names)) is not None:
-            twice = [column for column in found.columns.values() if names.count(column) > 1]
-            if twice:
-                raise InputError(f"two columns are called {twice[0]!r}", path)
-            return found
-    if name in ("auto", "footfall"):
-        lacking = next((column for column in ("t", *GYRO, *ACCEL) if column not in names), "t")
-        wanted = ", ".join(("t", *GYRO, *ACCEL))
-        raise InputError(f"column {lacking!r} is missing (expected {wanted})", path)
-    raise InputError(f"not the columns of format {name!r} (found {', '.join(names[:8]) or 'none'})", path)
+def chosen(path: Path, found: Sequence[Layout], sensor: str | None) -> Layout:
+    """The layout of the sensor that is wanted.
+
+    Raises
+    ------
+    InputError
+        There are several and none is wanted, or none of that name.
+    """
+    if len(found) == 1 and (sensor is None or found[0].id or sensor == found[0].sensor):
+        return found[0]
+    names = [one.sensor or "unnamed" for one in found]
+    if sensor is None:
+        raise InputError(f"holds {len(found)} sensors, choose one with --sensor: {', '.join(names)}", path)
+    if sensor not in names:
+        raise InputError(f"holds no sensor {sensor!r}, but {', '.join(names)}", path)
+    return found[names.index(sensor)]
 
 
-def _samples(
-    batches: Iterator[Mapping[str, np.ndarray]],
-    layout: Layout,
-    sizes: Mapping[str, float],
-    rate_hz: float | None,
-) -> Iterator[Samples]:
-    size = {channel: size or 1.0 for channel, size in layout.sizes.items()}
-    for channel in size:
-        size[channel] = sizes.get(channel.partition("_")[0], size[channel])
+class _Rows:
+    """Samples of a table, block by block, as the file has them."""
 
-    row = 0
-    for batch in batches:
+    def __init__(self, opened: Opened, layout: Layout, reading: Reading, notes: list[str]) -> None:
+        self.opened, self.layout, self.reading, self.notes = opened, layout, reading, notes
+        self.path = opened.content.path
+        self.size = {channel: size or 1.0 for channel, size in layout.sizes.items()}
+        for channel in self.size:
+            self.size[channel] = reading.sizes.get(channel.partition("_")[0], self.size[channel])
+        self.row, self.own = 0, 0
+        self.clock = Clock()
+        self.sensors: dict[str, None] = {}
+
+    def __iter__(self) -> Iterator[Samples]:
+        for batch in self._batches():
+            batch = self._of_sensor(batch)
+            samples = self._samples(batch)
+            yield samples
+        if len(self.sensors) > 1 and self.reading.sensor is None:
+            self._refuse_several()
+        if self.reading.sensor is not None and self.layout.id and self.reading.sensor not in self.sensors:
+            names = ", ".join(self.sensors) or "none"
+            raise InputError(f"holds no sensor {self.reading.sensor!r}, but {names}", self.path)
+        if self.clock.rounds:
+            self.notes.append(f"t starts anew {self.clock.rounds} times: made to go on")
+
+    def _batches(self) -> Iterator[Batch]:
+        wanted = [*self.layout.columns.values(), *self.layout.valid]
+        wanted += [name for name in (self.layout.finer, self.layout.id) if name]
+        texts = [name for name in (self.layout.id,) if name]
+        if self._stamped():
+            texts.append(self.layout.columns["t"])
+        if self.opened.dialect is None:
+            return _parquet(self.opened, wanted, texts)
+        return iter(
+            TextTable(
+                self.opened.content, self.opened.dialect, self.opened.header.names, wanted, texts, self.notes
+            )
+        )
+
+    def _stamped(self) -> bool:
+        """Whether t is written as dates or clocks."""
+        name = self.layout.columns.get("t")
+        if name is None or self.opened.dialect is None:
+            return False
+        place = list(self.opened.header.names).index(name)
+        cells = [row[place] for row in self.opened.rows[:10] if row[place]]
+        return any(map(is_stamp, cells))
+
+    def _of_sensor(self, batch: Batch) -> Batch:
+        """The rows of the sensor that is wanted."""
+        name = self.layout.id
+        if not name or len(self.sensors) > MOST_SENSORS:
+            return batch
+        whose = ["" if one is None else str(one) for one in batch[name]]
+        self.sensors.update(dict.fromkeys(one for one in dict.fromkeys(whose) if one))
+        if len(self.sensors) > MOST_SENSORS or self.reading.sensor is None:
+            return batch
+        rows = np.array([one == self.reading.sensor for one in whose], dtype=bool)
+        return {
+            column: [value for value, own in zip(values, rows, strict=True) if own]
+            if isinstance(values, list)
+            else values[rows]
+            for column, values in batch.items()
+        }
+
+    def _refuse_several(self) -> None:
+        if 1 < len(self.sensors) <= MOST_SENSORS:
+            raise InputError(
+                f"holds {len(self.sensors)} sensors by its column {self.layout.id!r}, choose one with "
+                f"--sensor: {', '.join(self.sensors)}",
+                self.path,
+            )
+
+    def _samples(self, batch: Batch) -> Samples:
+        layout, size = self.layout, self.size
         found = {
             channel: batch[name] if size[channel] == 1 else batch[name] * size[channel]
             for channel, name in layout.columns.items()
+            if channel != "t"
         }
-        n = len(batch[layout.columns[GYRO[0]]])
         gyro = np.column_stack([found[name] for name in GYRO])
         accel = np.column_stack([found[name] for name in ACCEL])
-        distrusted = np.zeros(n, dtype=bool)
+        distrusted = np.zeros(len(gyro), dtype=bool)
         for name in layout.valid:
             distrusted |= batch[name] == 0
         gyro[distrusted] = accel[distrusted] = np.nan
-        t = found["t"] if "t" in found else np.arange(row, row + n) / (rate_hz or 1.0)
-        yield Samples(row, t, gyro, accel, found.get("temperature"))
-        row += n
+        t = self._time(batch, len(gyro))
+        for values, names in ((gyro, GYRO), (accel, ACCEL)):
+            if names[0] in layout.increments and len(t) > 1:
+                values /= np.median(np.diff(t))
+        block = Samples(self.row, t, gyro, accel, found.get("temperature"))
+        self.row += len(gyro)
+        return block
+
+    def _time(self, batch: Batch, n: int) -> np.ndarray:
+        name = self.layout.columns.get("t")
+        if name is None:
+            return np.arange(self.row, self.row + n) / (self.reading.rate_hz or 1.0)
+        values = batch[name]
+        if isinstance(values, list):
+            return self.clock(seconds(values) + self._day(values))
+        if self.layout.finer:
+            return self.clock(values + 1e-9 * batch[self.layout.finer])
+        if self.row == 0 and self.layout.sizes["t"] is None and "t" not in self.reading.sizes and n > 1:
+            unit = likely_unit(values)
+            if unit != "s":
+                self.size["t"] = UNITS["t"][unit]
+                self.notes.append(f"t is taken for {unit}")
+        return self.clock(values) * self.size["t"]
+
+    def _day(self, values: list[str]) -> float:
+        """s from the day of the file's first stamp to that of this block's."""
+        from footfall.formats.stamps import ordinal
+
+        first = next((one for one in values if one and is_stamp(one)), None)
+        day = 0 if first is None else ordinal(first)
+        self._begin = getattr(self, "_begin", day)
+        return DAY * (day - self._begin)
 
 
-def _header(head: bytes) -> tuple[str, list[str]]:
-    line = head.decode("utf-8-sig", errors="replace").splitlines()[0] if head else ""
-    delimiter = max(",;\t", key=line.count)
-    return delimiter, [name.strip() for name in next(csv.reader([line], delimiter=delimiter), [])]
-
-
-def _row_bytes(head: bytes) -> int:
-    lines = head.splitlines(keepends=True)[1:]
-    whole = lines[:-1] or lines
-    return sum(map(len, whole)) // len(whole) if whole else 1
-
-
-def _csv(
-    path: Path, delimiter: str, names: Sequence[str], wanted: Sequence[str], notes: list[str]
-) -> Iterator[dict[str, np.ndarray]]:
-    torn: list[str] = []
-
-    def skip(row: Any) -> str:
-        torn.append(row.text)
-        return "skip"
-
-    try:
-        reader = pa_csv.open_csv(
-            path,
-            read_options=pa_csv.ReadOptions(
-                block_size=BLOCK_BYTES,
-                column_names=list(names),
-                skip_rows=1,
-                use_threads=False,
-                encoding="latin-1",  # numbers are ASCII; damaged bytes must not stop the reader
-            ),
-            parse_options=pa_csv.ParseOptions(delimiter=delimiter, invalid_row_handler=skip),
-            convert_options=pa_csv.ConvertOptions(
-                include_columns=list(wanted), column_types=dict.fromkeys(wanted, pa.float64())
-            ),
-        )
-        for batch in reader:
-            yield {name: _numbers(batch.column(name)) for name in wanted}
-    except pa.ArrowException as error:
-        reason = str(error).splitlines()[0]
-        if "Empty CSV" in reason:  # a header alone
-            raise InputError("no rows of samples", path) from None
-        if match := re.search(r"CSV column #(\d+): .*invalid value '(.*)'", reason):
-            name = names[int(match[1])]
-            raise InputError(f"column {name!r} holds {match[2]!r}, expected numbers", path) from None
-        raise InputError(f"not a readable CSV file ({reason})", path) from None
-    # A recorder that was switched off leaves half a line at the end; elsewhere the file is damaged.
-    if torn and (len(torn) > 1 or not _ends_with(path, torn[0])):
-        raise InputError(
-            f"{len(torn)} rows have another number of columns than the header's {len(names)}, "
-            f"the first is {torn[0][:60]!r}",
-            path,
-        )
-    if torn:
-        notes.append(TORN)
-
-
-def _ends_with(path: Path, text: str) -> bool:
-    with open(path, "rb") as file:
-        file.seek(-min(path.stat().st_size, len(text.encode("latin-1")) + 2), os.SEEK_END)
-        return file.read().rstrip(b"\r\n").endswith(text.encode("latin-1").rstrip(b"\r\n"))
-
-
-def _open_parquet(path: Path) -> tuple[Any, list[str]]:
+def _open_parquet(content: Content) -> tuple[Any, list[str]]:
     try:
         # Page by page: left to itself Arrow reads ahead, and holds what it has read to the end.
-        file = pq.ParquetFile(path, pre_buffer=False, buffer_size=PAGE_BYTES)
+        file = pq.ParquetFile(content.at, pre_buffer=False, buffer_size=PAGE_BYTES)
+        names = [_flat(name) for name in file.schema_arrow.names]
     except (pa.ArrowException, OSError) as error:
-        raise InputError(f"not a readable Parquet file ({str(error).splitlines()[0]})", path) from None
-    return file, list(file.schema_arrow.names)
+        raise InputError(
+            f"not a readable Parquet file ({str(error).splitlines()[0]})", content.path
+        ) from None
+    return file, names
 
 
-def _parquet(path: Path, file: Any, wanted: Sequence[str]) -> Iterator[dict[str, np.ndarray]]:
+def _flat(name: str) -> str:
+    """pandas writes columns of two levels as tuples."""
+    import ast
+
+    if name.startswith("('"):
+        try:
+            return " ".join(map(str, ast.literal_eval(name)))
+        except (ValueError, SyntaxError):
+            return name
+    return name
+
+
+def _first_rows(file: Any) -> tuple[tuple[str, ...], ...]:
+    try:
+        batch = next(file.iter_batches(batch_size=5, use_threads=False), None)
+    except (pa.ArrowException, OSError):
+        return ()
+    if batch is None:
+        return ()
+    return tuple(tuple(str(cell) for cell in row.values()) for row in batch.to_pylist())
+
+
+def _parquet(opened: Opened, wanted: Sequence[str], texts: Sequence[str]) -> Iterator[Batch]:
+    file, path = opened.file, opened.content.path
+    own = dict(zip(opened.header.names, file.schema_arrow.names, strict=True))
     for name in wanted:
-        kind = file.schema_arrow.field(name).type
-        if not (pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)):
+        kind = file.schema_arrow.field(own[name]).type
+        numeric = pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)
+        if not (numeric or name in texts or pa.types.is_timestamp(kind)):
             raise InputError(f"column {name!r} holds {kind}, expected numbers", path)
     try:
-        for batch in file.iter_batches(batch_size=BLOCK_ROWS, columns=list(wanted), use_threads=False):
-            yield {name: _numbers(batch.column(name)) for name in wanted}
+        columns = list(dict.fromkeys(own[name] for name in wanted))
+        for batch in file.iter_batches(batch_size=BLOCK_ROWS, columns=columns, use_threads=False):
+            yield {name: _values(batch.column(own[name]), name in texts) for name in wanted}
     except (pa.ArrowException, OSError) as error:
         raise InputError(f"not a readable Parquet file ({str(error).splitlines()[0]})", path) from None
 
 
-def _numbers(column: Any) -> np.ndarray:
-    return numbers([column]).astype(float, copy=False)
+def _values(column: Any, text: bool) -> Any:
+    if text:
+        return column.to_pylist()
+    if pa.types.is_timestamp(column.type):
+        unit = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[column.type.unit]
+        return floats(column.cast(pa.int64())) * unit
+    return floats(column)
 
 
-def _meta(path: Path, file: Any) -> dict[str, Any]:
+def _meta(path: Path, file: Any) -> Mapping[str, Any]:
     try:
         meta = json.loads((file.schema_arrow.metadata or {}).get(META_KEY, b"{}"))
     except ValueError:

@@ -138,7 +138,9 @@ def test_a_track_has_one_row_a_footfall_and_the_methods_evidence(cli, here):
     code, out, err = cli("track rec.parquet --method hdr --heading 90 -o turned.parquet")
     columns, meta = read_table("hdr.parquet")
     assert (code, out) == (0, "")
-    assert err == f"{len(columns['t'])} footfalls: turned.parquet\n"
+    said = err.splitlines()
+    assert said[0].startswith("rec.parquet: plausibility: velocity left 0.1")
+    assert said[1:] == [f"{len(columns['t'])} footfalls: turned.parquet"]
     assert {"t", "x", "y", "z", "heading", "raw_rate", "integrator"} <= set(columns)
     assert meta["method"] == "hdr"
     assert abs(len(columns["t"]) - len(read_walk("walk.parquet").footfalls.t)) <= 1

@@ -17,11 +17,12 @@ from footfall.pdr.detectors import (
     AngularRateEnergy,
     Magnitude,
     MovingVariance,
+    Patient,
     Shoe,
     require_detector,
     summary,
 )
-from footfall.pdr.stance import find_stances
+from footfall.pdr.stance import ThresholdDetector, find_stances
 from tests.helpers.synthetic_foot import walk
 
 STRIDES = 12
@@ -197,6 +198,24 @@ def test_each_has_a_name_and_a_line_for_people():
     for name, detector in DETECTORS.items():
         assert require_detector(name) is detector
         assert 20 < len(summary(detector)) < 120
-        assert replace(detector, window_s=0.03)(*still(50)).shape == (50,)  # type: ignore[type-var]
+        if hasattr(detector, "window_s"):
+            detector = replace(detector, window_s=0.03)  # type: ignore[type-var]
+        assert detector(*still(50)).shape == (50,)
     with pytest.raises(InputError, match="detector 'glrt' is unknown, expected one of threshold, shoe"):
         require_detector("glrt")
+
+
+def test_patience_changes_nothing_where_the_thresholds_find_every_stance():
+    truth = walk(np.zeros(STRIDES + 1), still_s=2.0)
+    samples = truth.t[1:], truth.gyro[1:], truth.accel[1:]
+    np.testing.assert_array_equal(Patient()(*samples), ThresholdDetector()(*samples))
+
+
+def test_patience_finds_the_stances_that_are_too_fast_for_the_thresholds():
+    """Feet that never turn by less than 80 deg/s: the thresholds see none at rest but at the ends."""
+    truth = walk(np.zeros(STRIDES + 1), still_s=2.0)
+    t, gyro, accel = truth.t[1:], truth.gyro[1:].copy(), truth.accel[1:]
+    gyro[(t > 2.0) & (t < t[-1] - 2.0), 0] += np.radians(80.0)
+    found = [len(find_stances(t, one(t, gyro, accel)).footfalls) for one in (ThresholdDetector(), Patient())]
+    assert found[0] < 4
+    assert found[1] >= STRIDES

@@ -1,0 +1,37 @@
+"""`footfall convert`: a recording of any format, mended, in Footfall's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from footfall.cli.options import ColumnsOption, FormatOption, RateOption, SensorOption, UnitOption
+from footfall.cli.reading import reading_of
+from footfall.cli.terminal import ERR, require_output, say
+
+
+def convert(
+    recording: Annotated[
+        Path, typer.Argument(help="A recording, as its logger wrote it (docs/real_recordings.md).")
+    ],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Parquet or CSV file to write.")],
+    format: FormatOption = "auto",
+    columns: ColumnsOption = None,
+    sensor: SensorOption = None,
+    unit: UnitOption = None,
+    rate: RateOption = None,
+) -> None:
+    """Write a recording, mended, with the columns of Footfall's own: t, gyro_x, ..., accel_z, in SI."""
+    from footfall.formats import read
+    from footfall.recording import write_recording, write_recording_csv
+
+    require_output(output, (".parquet", ".csv"), recording)
+    with ERR.status("reading"):
+        found, findings = read(recording, format, reading=reading_of(unit, rate, columns, sensor))
+        write = write_recording_csv if output.suffix.lower() == ".csv" else write_recording
+        write(found, output)
+    for sentence in findings.sentences():
+        say(f"{recording}: {sentence}")
+    say(f"{len(found.t)} samples: {output}")
