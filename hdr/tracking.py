@@ -203,17 +203,21 @@ def _long(
 
 
 def _judged(track: Track, given: Reckoning, findings: Findings) -> tuple[Plausibility, Track]:
-    """The track's plausibility, and the track that tells it and which of its strides are doubtful."""
+    """The track's plausibility, and the track that tells it and which of its strides are doubtful.
+
+    By dead reckoning, whatever the method makes of it: it tells what the samples say.
+    """
     doubtful = doubtful_rows(track.t - given.recording.t[0], findings.doubtful)
+    reckoned = given.footfalls
     likely = judge_track(
-        track.t,
-        track.position,
+        reckoned.t,
+        reckoned.position,
         velocity_left(given.recording, given.detected, given.pdr),
         longest_movement(given.recording.t, given.detected.score),
         spoilt_share(findings.as_dict()),
         int(doubtful.sum()),
     )
-    told = {"plausibility": likely.as_dict()}
+    told: dict[str, Any] = {}
     if given.detected.rest.bias_sd:
         rest = given.detected.rest
         told["rest"] = {
@@ -221,6 +225,8 @@ def _judged(track: Track, given: Reckoning, findings: Findings) -> tuple[Plausib
             "gyro_bias_rad_s": rest.gyro_bias.tolist(),
             "gyro_bias_sd_rad_s": rest.bias_sd,
         }
+    likely = replace(likely, height_m=float(track.position[-1, 2] - track.position[0, 2]))
+    told["plausibility"] = likely.as_dict()
     track = replace(track, meta={**track.meta, **told})
     if not doubtful.any():
         return likely, track

@@ -171,7 +171,7 @@ def _frozen(t: np.ndarray, gyro: np.ndarray, same: np.ndarray, interval: float) 
     moving = np.linalg.norm(gyro[long[:, 0]], axis=1) > MOVING
     # A coarse sensor repeats itself at every rest, a freeze is rare; one that nothing follows hides nothing.
     coarse = (same & ~rows).sum() > REPEATS * (~rows).sum() or (~moving).sum() >= RESTS
-    inside = (long[:, 0] > 1) & (long[:, 1] < len(t))
+    inside = (long[:, 0] > FROZEN_ROWS) & (long[:, 1] < len(t) - FROZEN_ROWS)
     for start, stop in long[moving | (inside & (not coarse))]:
         frozen[start:stop] = True
     return frozen if frozen.mean() < 0.5 else np.zeros_like(frozen)

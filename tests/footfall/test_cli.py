@@ -199,8 +199,10 @@ def test_a_track_and_a_walk_are_exported(cli, here):
 
 def test_a_csv_gives_the_same_track(cli, here):
     write_csv("rec.csv", read_table("rec.parquet")[0])
-    assert cli("track rec.csv --method pdr --heading 0 -o csv.parquet")[0] == 0
-    assert cli("track rec.parquet --method pdr --heading 0 -o pdr.parquet")[0] == 0
+    # Nor does it say that it is simulated.
+    told = "--method pdr --detector threshold --bias-time 20 --heading 0"
+    assert cli(f"track rec.csv {told} -o csv.parquet")[0] == 0
+    assert cli(f"track rec.parquet {told} -o pdr.parquet")[0] == 0
     ours, meta = read_table("pdr.parquet")
     # A CSV says nothing of its start.
     for i, axis in enumerate("xyz"):
