@@ -179,7 +179,7 @@ def _frozen(t: np.ndarray, gyro: np.ndarray, same: np.ndarray, interval: float) 
 
 def _stuck(values: np.ndarray, gyro: np.ndarray, bad: np.ndarray, interval: float) -> list[np.ndarray]:
     """For each axis the rows (n,) in which it alone stays as it is while the foot turns."""
-    turning = np.linalg.norm(np.nan_to_num(gyro), axis=1) > MOVING
+    turning = np.linalg.norm(np.nan_to_num(gyro, posinf=0.0, neginf=0.0), axis=1) > MOVING
     made = []
     for axis in range(3):
         channel = values[:, axis]
