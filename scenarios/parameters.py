@@ -28,6 +28,7 @@ from footfall.scenarios.scenario import (
     ScenarioFile,
     SubjectTable,
     build_scenario,
+    listed,
     read_document,
 )
 from footfall.scenarios.trial import DEFAULT_METHODS, Setup, find, setup
@@ -192,9 +193,9 @@ def _opened_subjects(table: Mapping[str, Any], path: str) -> Mapping[str, Any]:
     """A stock subject's name becomes a table before something in it is set."""
     first, *rest = parse(path)
     subjects = table.get("subjects")
-    if first.name != "subjects" or not rest or not isinstance(subjects, list):
+    if first.name != "subjects" or not rest:
         return table
-    return {**table, "subjects": [_as_table(entry) for entry in subjects]}
+    return {**table, "subjects": [_as_table(entry) for entry in listed(subjects)]}
 
 
 def _as_table(entry: Any) -> Any:
