@@ -25,6 +25,7 @@ from footfall.cli.record import record
 from footfall.cli.render import render
 from footfall.cli.run import run
 from footfall.cli.score import score
+from footfall.cli.sensitivity import sensitivity
 from footfall.cli.sweep import sweep
 from footfall.cli.terminal import perform
 from footfall.cli.track import track
@@ -68,6 +69,7 @@ COMMANDS = (
     check,
     sweep,
     gate,
+    sensitivity,
     export,
     allan,
 )
