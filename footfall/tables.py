@@ -83,7 +83,11 @@ def write_table(
     split = [name for name, values in columns.items() if smooth and values.dtype.kind == "f"]
     with replacing(path) as temporary:
         if is_csv(path):
-            pa_csv.write_csv(table, temporary, pa_csv.WriteOptions(quoting_style="none"))
+            with temporary.open("wb") as file:
+                file.write(
+                    ",".join(table.column_names).encode() + b"\n"
+                )  # pyarrow quotes them
+                pa_csv.write_csv(table, file, pa_csv.WriteOptions(include_header=False, quoting_style="none"))
             return
         pq.write_table(
             table.replace_schema_metadata(schema_meta),
