@@ -48,7 +48,7 @@ def own(scenario: str, walk: int, method: str, track: Track, truth: Walk) -> Own
 
 
 def without_bias(name: str) -> Scenario:
-    """A stock scenario whose sensor is let be perfect: the IHDE tests give it a gyro bias with the first step."""
+    """A stock scenario without the gyro bias that the IHDE tests give to whatever sensor is worn."""
     return load_scenario(name).changed("sensor", bias_shift_deg_s=0.0)
 
 
