@@ -13,7 +13,7 @@ import numpy as np
 from footfall.columns import ACCEL, GYRO, POSITION, QUATERNION, RECORDING
 from footfall.errors import InputError
 from footfall.identity import content_digest
-from footfall.tables import read_table, require_columns, write_csv, write_table
+from footfall.tables import column_names, read_table, require_columns, write_table
 
 
 @dataclass(frozen=True)
@@ -85,21 +85,12 @@ class Recording:
 
 def write_recording(recording: Recording, path: str | os.PathLike[str]) -> None:
     """Write `recording` to Parquet: t, gyro_x..z, accel_x..z, and temperature where there is one."""
-    write_table(path, _columns(recording), RECORDING, recording.meta)
-
-
-def write_recording_csv(recording: Recording, path: str | os.PathLike[str]) -> None:
-    """The same as text, without the provenance."""
-    write_csv(path, _columns(recording))
-
-
-def _columns(recording: Recording) -> dict[str, np.ndarray]:
     columns = {"t": recording.t}
     columns |= {name: recording.gyro[:, i] for i, name in enumerate(GYRO)}
     columns |= {name: recording.accel[:, i] for i, name in enumerate(ACCEL)}
     if recording.temperature is not None:
         columns["temperature"] = recording.temperature
-    return columns
+    write_table(path, columns, RECORDING, recording.meta)
 
 
 def is_truth(names: Iterable[str]) -> bool:
@@ -113,6 +104,17 @@ def refuse_truth(path: str | os.PathLike[str], names: Iterable[str]) -> None:
         raise InputError(
             "is the truth of a walk, expected what an IMU recorded of it: first "
             f"`footfall record {path} --imu perfect -o FILE` (or another IMU)",
+            path,
+        )
+
+
+def refuse_recording(path: str | os.PathLike[str]) -> None:
+    """Raise InputError where a file is a recording, and the truth of a walk is wanted."""
+    names = column_names(path)
+    if set(GYRO) <= set(names) and not is_truth(names):
+        raise InputError(
+            "is a recording, expected a walk that `footfall walk` wrote (to add an IMU's errors to a "
+            "recording: `footfall record --from-recording`)",
             path,
         )
 

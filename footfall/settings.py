@@ -10,6 +10,7 @@ import difflib
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
+from functools import lru_cache
 from types import NoneType, UnionType
 from typing import Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
 
@@ -169,8 +170,9 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     """The end of a message about an unknown name: the nearest known ones, or all where none is near."""
     every = list(known)
     near = difflib.get_close_matches(name, every, n=1)
+    near = near or [one for one in every if len(name) > 2 and name in one]
     # theta_w for theta_w_deg_s, count for directions.count
-    near = [one for one in every if one.startswith(name) or one.endswith(f".{name}")] or near
+    near = [one for one in every if name and (one.startswith(name) or one.endswith(f".{name}"))] or near
     if near:
         return f"; did you mean {' or '.join(near)}?"
     return f"; expected one of {', '.join(every)}" if every else "; there is nothing to set"
@@ -187,11 +189,14 @@ def _limits(item: Any) -> _Limits:
     return found
 
 
+_hints: Callable[[Any], Mapping[str, Any]] = lru_cache(get_type_hints)  # slow; studies ask at every point
+
+
 def _places(params: Any, path: tuple[str, ...] = ()) -> Iterator[_Place]:
     if not is_dataclass(params):
         return
     try:
-        hints = get_type_hints(type(params))
+        hints = _hints(type(params))
     except (NameError, TypeError) as error:
         raise InputError(f"the types of its fields cannot be read ({error})", type(params).__name__) from None
     for item in fields(params):

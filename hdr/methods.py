@@ -12,6 +12,8 @@ from footfall.hdr.command import command_method
 from footfall.hdr.directions import DirectionParams
 from footfall.hdr.hde import Hde, Hde2010Params, HdeParams
 from footfall.hdr.hdr import HdrParams
+from footfall.hdr.hypotheses.params import HypothesesParams
+from footfall.hdr.hypotheses.track import hypotheses_track, smoothed_track
 from footfall.hdr.ihde import Ihde, IhdeParams
 from footfall.hdr.ihde_plus import IhdePlus, IhdePlusParams
 from footfall.hdr.jimenez import FilterHdr, FilterHdrParams, Jimenez, JimenezParams
@@ -32,6 +34,7 @@ from footfall.pdr.filter.ins import FilterSettings
 from footfall.pdr.reckoning import PdrParams, StartPose
 from footfall.pdr.track import Track
 from footfall.recording import Recording
+from footfall.settings import did_you_mean
 
 
 def _learned(reckoning: Reckoning, own: DirectionParams) -> DirectionParams:
@@ -63,6 +66,14 @@ def _pdr(reckoning: Reckoning, _: None) -> Track:
 
 def _hdr(reckoning: Reckoning, params: HdrParams) -> Track:
     return hdr_track(reckoning.footfalls, params)
+
+
+def _hypotheses(reckoning: Reckoning, params: HypothesesParams) -> Track:
+    return hypotheses_track(reckoning.footfalls, params)
+
+
+def _hypotheses_smooth(reckoning: Reckoning, params: HypothesesParams) -> Track:
+    return smoothed_track(reckoning.footfalls, params)
 
 
 def _iez(reckoning: Reckoning, settings: FilterSettings) -> Track:
@@ -125,6 +136,20 @@ METHODS: Mapping[str, Method] = MappingProxyType(
                 "Heuristic Drift Reduction, the basic controller of section 2",
                 _hdr,
                 HdrParams.basic(),
+                needs="footfalls",
+            ),
+            Method(
+                "hypotheses",
+                "straight, curve or turn, with a physical drift: a filter over hypotheses",
+                _hypotheses,
+                HypothesesParams(),
+                needs="footfalls",
+            ),
+            Method(
+                "hypotheses-smooth",
+                "hypotheses with hindsight: what the whole walk says of every footfall",
+                _hypotheses_smooth,
+                HypothesesParams(),
                 needs="footfalls",
             ),
             Method(
@@ -263,8 +288,8 @@ def _require_findable(use: str) -> None:
         return
     if use.endswith(".py"):
         raise InputError(f"say which of its names: {use}:NAME", use)
-    known = ", ".join([*METHODS, *entry_point_names()])
-    raise InputError(f"method {use!r} is unknown, expected one of {known}, {FORMS}")
+    known = [*METHODS, *entry_point_names()]
+    raise InputError(f"method {use!r} is unknown{did_you_mean(use, [*known, FORMS])}")
 
 
 def told_directions(method: str | Method, directions: int | None, reference: float | None) -> DirectionParams:

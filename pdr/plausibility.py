@@ -158,14 +158,14 @@ def velocity_left(recording: Recording, found: Detected, params: PdrParams) -> f
     if len(resets) < 2:
         return None
     t, gyro, accel = compact(recording.t), compact(recording.gyro), compact(recording.accel)
-    attitude, _ = _kernels.reckon(
-        t, gyro, accel, found.rest.gyro_bias, level_attitude(found.rest.force), resets, params.tilt_gain
-    )
+    level = level_attitude(found.rest.force)
+    bias = found.rest.gyro_bias
+    attitude = _kernels.reckon(t, gyro, accel, bias, level, resets, params.tilt_gain)[0]
     left = []
     zero = np.zeros(3)
     for i in np.flatnonzero(np.diff(t[resets]) > params.stance.min_stride_s):
         rows = slice(resets[i], resets[i + 1] + 1)
-        rates = gyro[rows] - found.rest.gyro_bias
+        rates = gyro[rows] - bias
         _, velocity, _ = _kernels.integrate(t[rows], rates, accel[rows], attitude[i], zero, zero)
         left.append(float(velocity[-1] @ velocity[-1]))
     return float(np.sqrt(np.mean(left))) if left else None

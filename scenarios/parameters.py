@@ -9,7 +9,10 @@ import re
 import tomllib
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any, NamedTuple
+
+from pydantic import BaseModel
 
 from footfall.addresses import edited, keys, parse, pattern, there
 from footfall.errors import InputError
@@ -24,14 +27,17 @@ from footfall.pdr.detectors import DETECTORS, require_detector
 from footfall.pdr.filter.ins import FilterSettings
 from footfall.pdr.reckoning import PdrParams
 from footfall.scenarios.scenario import (
+    Scenario,
     ScenarioDocument,
     ScenarioFile,
     SubjectTable,
     build_scenario,
+    listed,
     read_document,
 )
 from footfall.scenarios.trial import DEFAULT_METHODS, Setup, find, setup
 from footfall.settings import changed, did_you_mean, kind_of, leaves
+from footfall.toml import parse_toml
 
 STAGES = ("walk", "record", "reckon", "track")  # in the order of the data; a stage repeats all after it
 
@@ -89,19 +95,24 @@ class Documents:
     unit: Mapping[str, Any] = field(default_factory=dict)
     without: tuple[str, ...] = ()
 
-    def setup(self) -> Setup:
+    def setup(self, scenario: Scenario | None = None) -> Setup:
         """Checked and built.
+
+        Parameters
+        ----------
+        scenario : what is built of its document, where it is there already
 
         Raises
         ------
         InputError
             What a file, a data sheet or a method refuses.
         """
-        scenario = build_scenario(self.scenario)
+        scenario = scenario or build_scenario(self.scenario)
         made = setup(scenario, imu=self.sheet, methods=self.methods, without=self.without)
         pdr = reckoning_params(made.pdr, self.detector, self.pdr)
         guided = _about("filter", made.guided, self.guided)
-        overridden(draw_unit(made.spec, 0), self.unit)  # refused here, not in every trial
+        if self.unit:  # refused here, not in every trial
+            overridden(draw_unit(made.spec, 0), self.unit)
         return replace(made, pdr=pdr, guided=guided, unit=dict(self.unit))
 
 
@@ -127,13 +138,21 @@ def documents(
 def parsed(settings: Iterable[str]) -> dict[str, Any]:
     """`ADDRESS=VALUE` texts as address -> value; a value is written as in TOML, text may go without quotes.
 
+    `@FILE` stands for all of the table `[set]` of a TOML file, as `footfall tune` writes it.
+
     Raises
     ------
     InputError
-        No "=", or an address twice.
+        No "=", an address twice, or a file that has no such table.
     """
     found: dict[str, Any] = {}
     for setting in settings:
+        if setting.startswith("@"):
+            for address, value in _file_of_values(setting[1:]).items():
+                if address in found:
+                    raise InputError(f"--set {setting}: {address} is given twice")
+                found[address] = value
+            continue
         # An "=" in brackets chooses an element.
         match = re.fullmatch(r"((?:[^=\[]|\[[^\]]*\])+)=(.*)", setting, flags=re.DOTALL)
         if match is None:
@@ -148,6 +167,13 @@ def parsed(settings: Iterable[str]) -> dict[str, Any]:
     return found
 
 
+def _file_of_values(name: str) -> dict[str, Any]:
+    values = parse_toml(name).get("set")
+    if not isinstance(values, dict) or any(isinstance(value, dict) for value in values.values()):
+        raise InputError('expected a table [set] of "ADDRESS" = VALUE', name)
+    return values
+
+
 def with_values(base: Documents, values: Mapping[str, Any]) -> Documents:
     """The documents with other values, by address, in their order.
 
@@ -160,14 +186,14 @@ def with_values(base: Documents, values: Mapping[str, Any]) -> Documents:
     for address, value in values.items():
         area, _, path = address.partition(".")
         own = {method.name for method in base.methods}
-        if area in _AREAS:  # first: the method pdr has no parameters of its own
-            base = _AREAS[area](base, address, path, value)
+        if area in AREAS:  # first: the method pdr has no parameters of its own
+            base = AREAS[area](base, address, path, value)
         elif area in own:
             base = replace(base, methods=tuple(_told(method, area, path, value) for method in base.methods))
         elif area in METHODS:
             raise InputError(f"method {area!r} is not among {', '.join(sorted(own))}", address)
         else:
-            raise InputError(f"unknown area{did_you_mean(area, [*_AREAS, *sorted(own)])}", address)
+            raise InputError(f"unknown area{did_you_mean(area, [*AREAS, *sorted(own)])}", address)
     return base
 
 
@@ -181,7 +207,7 @@ def _told(method: Method, area: str, path: str, value: Any) -> Method:
 
 
 def _scenario(base: Documents, address: str, path: str, value: Any) -> Documents:
-    _require_known(address, [f"scenario.{key.address}" for key in keys(ScenarioFile)])
+    _require_known(address, _addresses("scenario", ScenarioFile))
     if address == "scenario.sensor.imu":
         raise InputError("set imu, or use the option --imu", address)
     table = _opened_subjects(base.scenario.table, path)
@@ -192,9 +218,9 @@ def _opened_subjects(table: Mapping[str, Any], path: str) -> Mapping[str, Any]:
     """A stock subject's name becomes a table before something in it is set."""
     first, *rest = parse(path)
     subjects = table.get("subjects")
-    if first.name != "subjects" or not rest or not isinstance(subjects, list):
+    if first.name != "subjects" or not rest:
         return table
-    return {**table, "subjects": [_as_table(entry) for entry in subjects]}
+    return {**table, "subjects": [_as_table(entry) for entry in listed(subjects)]}
 
 
 def _as_table(entry: Any) -> Any:
@@ -213,7 +239,7 @@ def _imu(base: Documents, address: str, path: str, value: Any) -> Documents:
 def _sheet_with(sheet: SheetDocument, address: str, path: str, value: Any) -> SheetDocument:
     if not path:
         return read_sheet(str(value))
-    known = [f"imu.{key.address}" for key in keys(ImuSheet)]
+    known = _addresses("imu", ImuSheet)
     if address not in known:
         one = f"unit.{path}" if path in CONSTANTS else None
         spread = next((name for name in known if name.replace("_sigma", "") == address), None)
@@ -270,7 +296,7 @@ def _filter(base: Documents, address: str, path: str, value: Any) -> Documents:
     return replace(base, guided={**base.guided, path: value})
 
 
-_AREAS = {"scenario": _scenario, "imu": _imu, "unit": _unit, "pdr": _pdr, "filter": _filter}
+AREAS = {"scenario": _scenario, "imu": _imu, "unit": _unit, "pdr": _pdr, "filter": _filter}
 
 
 def reckoning_params(base: PdrParams, detector: str | None, values: Mapping[str, Any]) -> PdrParams:
@@ -290,6 +316,12 @@ def _about(area: str, base: Any, values: Mapping[str, Any]) -> Any:
         return changed(base, values)
     except InputError as error:
         raise InputError(f"{area}.{error}") from None
+
+
+@lru_cache
+def _addresses(area: str, model: type[BaseModel]) -> tuple[str, ...]:
+    """Those of a document; studies ask for them at every point."""
+    return tuple(f"{area}.{key.address}" for key in keys(model))
 
 
 def _require_known(address: str, known: Iterable[str]) -> None:

@@ -1,7 +1,8 @@
 """The command line: `footfall --help`.
 
-Results go to standard output, everything else to standard error. Exit codes: 0 well, 1 a gate failed, 2 bad
-input, told in one sentence.
+Results go to standard output, everything else to standard error. Exit codes: 0 well, 1 a gate or a check
+failed, 2 bad input, told in one sentence, 3 no gate failed, but some are undecided, 4 stopped, and may be
+taken up again, 130 interrupted.
 
 Each command is a file of its name. It is only a signature until it is called: what it needs it imports then,
 so that `footfall list` does not wait for what `footfall run` loads.
@@ -19,15 +20,21 @@ from footfall.cli.cache import cache
 from footfall.cli.check import check
 from footfall.cli.convert import convert
 from footfall.cli.export import export
+from footfall.cli.gate import gate
 from footfall.cli.inspect import inspect
 from footfall.cli.list import list_
+from footfall.cli.map import map_
 from footfall.cli.parameters import parameters
 from footfall.cli.record import record
 from footfall.cli.render import render
+from footfall.cli.report import report
 from footfall.cli.run import run
 from footfall.cli.score import score
+from footfall.cli.sensitivity import sensitivity
+from footfall.cli.sweep import sweep
 from footfall.cli.terminal import perform
 from footfall.cli.track import track
+from footfall.cli.tune import tune
 from footfall.cli.walk import walk
 
 app = typer.Typer(
@@ -56,9 +63,28 @@ def _main(
         print(context.get_help())
 
 
-for command in (
-    *(list_, parameters, run, walk, render, record, inspect, convert, track, score, check, export, allan),
-):
+COMMANDS = (
+    list_,
+    parameters,
+    run,
+    walk,
+    render,
+    record,
+    inspect,
+    convert,
+    track,
+    score,
+    check,
+    sweep,
+    gate,
+    sensitivity,
+    map_,
+    tune,
+    report,
+    export,
+    allan,
+)
+for command in COMMANDS:
     app.command(command.__name__.rstrip("_"))(command)
 app.add_typer(cache, name="cache")
 

@@ -9,7 +9,7 @@ import typer
 
 from footfall.cli.options import ColumnsOption, FormatOption, RateOption, SensorOption, UnitOption
 from footfall.cli.reading import reading_of
-from footfall.cli.terminal import ERR, require_output, say
+from footfall.cli.terminal import ERR, TABLES, require_output, say
 
 
 def convert(
@@ -25,13 +25,12 @@ def convert(
 ) -> None:
     """Write a recording, mended, with the columns of Footfall's own: t, gyro_x, ..., accel_z, in SI."""
     from footfall.formats import read
-    from footfall.recording import write_recording, write_recording_csv
+    from footfall.recording import write_recording
 
-    require_output(output, (".parquet", ".csv"), recording)
+    require_output(output, TABLES, recording)
     with ERR.status("reading"):
         found, findings = read(recording, format, reading=reading_of(unit, rate, columns, sensor))
-        write = write_recording_csv if output.suffix.lower() == ".csv" else write_recording
-        write(found, output)
+        write_recording(found, output)
     for sentence in findings.sentences():
         say(f"{recording}: {sentence}")
     say(f"{len(found.t)} samples: {output}")

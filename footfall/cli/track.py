@@ -18,7 +18,7 @@ from footfall.cli.options import (
     UnitOption,
 )
 from footfall.cli.reading import reading_of
-from footfall.cli.terminal import ERR, blaming, finite, require_output, say
+from footfall.cli.terminal import ERR, TABLES, blaming, finite, require_output, say
 from footfall.errors import InputError
 
 
@@ -107,7 +107,7 @@ def track(
     from footfall.pdr.reckoning import PdrParams
     from footfall.pdr.track import write_track
 
-    require_output(output, ".parquet", recording)
+    require_output(output, TABLES, recording)
     if bias_time is not None:
         with blaming("--bias-time", "pdr"):
             PdrParams(bias_s=bias_time)
