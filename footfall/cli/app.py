@@ -29,6 +29,7 @@ from footfall.cli.record import record
 from footfall.cli.render import render
 from footfall.cli.report import report
 from footfall.cli.run import run
+from footfall.cli.sample import sample
 from footfall.cli.score import score
 from footfall.cli.sensitivity import sensitivity
 from footfall.cli.sweep import sweep
@@ -70,6 +71,7 @@ COMMANDS = (
     walk,
     render,
     record,
+    sample,
     inspect,
     convert,
     track,
