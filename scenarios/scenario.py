@@ -287,7 +287,8 @@ class Scenario:
 
 def stock_scenarios() -> tuple[str, ...]:
     """Names of the scenarios that come with Footfall."""
-    return tuple(sorted(file.stem for file in STOCK.glob("*.toml")))
+    # Gates lie beside them, in closed-loop.gates.toml.
+    return tuple(sorted(file.stem for file in STOCK.glob("*.toml") if "." not in file.stem))
 
 
 def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:

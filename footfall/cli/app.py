@@ -18,6 +18,7 @@ from footfall.cli.allan import allan
 from footfall.cli.cache import cache
 from footfall.cli.check import check
 from footfall.cli.export import export
+from footfall.cli.gate import gate
 from footfall.cli.list import list_
 from footfall.cli.parameters import parameters
 from footfall.cli.record import record
@@ -54,7 +55,7 @@ def _main(
         print(context.get_help())
 
 
-for command in (list_, parameters, run, walk, render, record, track, score, check, export, allan):
+for command in (list_, parameters, run, walk, render, record, track, score, check, gate, export, allan):
     app.command(command.__name__.rstrip("_"))(command)
 app.add_typer(cache, name="cache")
 
