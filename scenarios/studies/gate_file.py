@@ -19,7 +19,7 @@ from footfall.pdr.track import Track
 from footfall.scenarios.judge.bounds import ALPHA, fewest
 from footfall.scenarios.judge.gate import Gate
 from footfall.scenarios.parameters import documents, with_values
-from footfall.scenarios.scenario import STOCK, Seed, stock_scenarios
+from footfall.scenarios.scenario import STOCK, Seed
 from footfall.scenarios.trial import Setup
 from footfall.settings import did_you_mean
 from footfall.toml import Strict, checked, parse_toml
@@ -191,7 +191,8 @@ def _resolved(file: GatesFile, path: Path, given: Mapping[str, Method | Callable
         else:
             known = [*given, *own, *METHODS, *entry_point_names()]
             raise InputError(f"method {name!r}: unknown{did_you_mean(name, known)}")
-    base = documents(_place(cases.scenario, folder), imu=cases.imu, methods=found.values())
+    scenario = str(folder / cases.scenario) if cases.scenario.endswith(".toml") else cases.scenario
+    base = documents(scenario, imu=cases.imu, methods=found.values())
     setup = with_values(base, file.set).setup()
     uncorrected = all(is_uncorrected(method) for method in setup.methods)
     seeds = setup.scenario.seeds
@@ -210,10 +211,6 @@ def _resolved(file: GatesFile, path: Path, given: Mapping[str, Method | Callable
             raise InputError(f"gate {gate.name!r}: {gate.method} against itself")
     _require_enough(made.gates, made.units)
     return made
-
-
-def _place(scenario: str, folder: Path) -> str:
-    return scenario if scenario in stock_scenarios() else str(folder / scenario)
 
 
 def _names(gates: Sequence[Gate]) -> list[str]:
