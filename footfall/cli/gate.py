@@ -80,9 +80,11 @@ def gate(
     if cache_key:
         print(key_of(read))
         return
-    for file, ending in ((record, ".parquet"), (junit, ".xml")):
+    for file, ending in ((record, ".parquet"), (junit, ".xml"), (markdown, None)):
         if file is not None:
-            require_output(file, ending, Path(read.source))
+            require_output(file, file.suffix.lower() if ending is None else ending, Path(read.source))
+    if record is None:
+        read_baselines(read)  # before any work
     say(f"{cases_line(read)}; {walks_cached(read)} walks in the cache")
     if record is not None:
         with showing() as progress:
@@ -90,7 +92,6 @@ def gate(
         write_baseline(rows, record)
         say(f"Scores of {', '.join(dict.fromkeys(row.method for row in rows))} are in {record}")
         return
-    read_baselines(read)  # before any work
     looks = _looks(sequential)
     folder = out or Path("out") / read.name
     with results_folder(folder):
