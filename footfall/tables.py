@@ -53,6 +53,11 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         raise InputError(f"cannot be written ({error.strerror or error})", target) from None
 
 
+def is_csv(path: str | os.PathLike[str]) -> bool:
+    """Whether a file's name ends so; any other is Parquet."""
+    return Path(path).suffix.lower() == ".csv"
+
+
 def write_table(
     path: str | os.PathLike[str],
     columns: Columns,
@@ -61,7 +66,9 @@ def write_table(
     *,
     smooth: bool = False,
 ) -> None:
-    """Write equally long one-dimensional columns to Parquet.
+    """Write equally long one-dimensional columns to Parquet, or to CSV where the name ends so.
+
+    CSV holds the numbers to their last bit, and neither units nor provenance.
 
     Parameters
     ----------
@@ -75,6 +82,13 @@ def write_table(
     table = pa.table({name: _array(values) for name, values in columns.items()})
     split = [name for name, values in columns.items() if smooth and values.dtype.kind == "f"]
     with replacing(path) as temporary:
+        if is_csv(path):
+            with temporary.open("wb") as file:
+                file.write(
+                    ",".join(table.column_names).encode() + b"\n"
+                )  # pyarrow quotes them
+                pa_csv.write_csv(table, file, pa_csv.WriteOptions(include_header=False, quoting_style="none"))
+            return
         pq.write_table(
             table.replace_schema_metadata(schema_meta),
             temporary,
@@ -99,7 +113,7 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
         The file is absent, unreadable, or a column is not numeric.
     """
     source = _file(path)
-    kind = "CSV" if source.suffix.lower() == ".csv" else "Parquet"
+    kind = "CSV" if is_csv(source) else "Parquet"
     try:
         table = pa_csv.read_csv(source) if kind == "CSV" else pq.ParquetFile(source).read()
         names = table.column_names
@@ -117,7 +131,7 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
 
 
 def read_meta(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """The provenance in a Parquet file, without its columns; empty for a file that Footfall did not write.
+    """The provenance in a Parquet file, without its columns; empty for CSV and for others' files.
 
     Raises
     ------
@@ -125,6 +139,8 @@ def read_meta(path: str | os.PathLike[str]) -> dict[str, Any]:
         The file is absent or unreadable.
     """
     source = _file(path)
+    if is_csv(source):
+        return {}
     try:
         return _meta(source, pq.read_schema(source))
     except (pa.ArrowException, OSError) as error:
@@ -140,7 +156,7 @@ def column_names(path: str | os.PathLike[str]) -> list[str]:
         The file is absent or unreadable.
     """
     source = _file(path)
-    kind = "CSV" if source.suffix.lower() == ".csv" else "Parquet"
+    kind = "CSV" if is_csv(source) else "Parquet"
     try:
         if kind == "CSV":
             with pa_csv.open_csv(source) as opened:

@@ -50,6 +50,9 @@ def blaming(file: Path | str, part: str = "recording") -> Iterator[None]:
         raise error.about(file, part) from None
 
 
+TABLES = (".parquet", ".csv")  # what tables are written as
+
+
 def require_output(file: Path, ending: str | tuple[str, ...], *inputs: Path) -> None:
     """Refuse a file that cannot or must not be written before any work is done.
 

@@ -85,7 +85,6 @@ def test_both_fidelities_agree_on_dead_reckoning(file):
     ratio = np.log(budget.points[0].scores / full.points[0].scores)
     assert np.abs(ratio).mean() < 0.15
     assert np.corrcoef(np.log([budget.points[0].scores, full.points[0].scores]))[0, 1] > 0.9
-    assert budget.sobol.total[0].value > budget.sobol.total[1].value
 
 
 def test_the_unit_as_a_factor(file):
@@ -150,11 +149,10 @@ def test_a_study_asks_something_of_several_parameters(file):
         read_study(str(file))
 
 
-def test_without_a_name_the_stock_studies_are_listed(cli):
-    code, printed, _ = cli("sensitivity")
+def test_the_stock_studies_are_listed(cli):
+    code, printed, _ = cli("sensitivity list --json")
     assert code == 0
-    for name in stock_studies():
-        assert name in printed
+    assert set(json.loads(printed)) == set(stock_studies())
 
 
 def test_no_such_study(cli):
