@@ -25,6 +25,12 @@ def street():
     return round_a_block(400, legs=1)
 
 
+@pytest.fixture(scope="module")
+def small_block():
+    """Four minutes: enough to see what is wrong."""
+    return round_a_block(50)
+
+
 @pytest.mark.parametrize("name", stock_gates())
 def test_footfall_passes_its_own_gates(name, block, street, monkeypatch):
     walk_instead(monkeypatch, street if name == "straight" else block)
@@ -37,9 +43,9 @@ def test_there_are_gates_of_what_is_promised():
 
 
 @pytest.mark.parametrize("defect", DEFECTS, ids=[defect.name for defect in DEFECTS])
-def test_a_defect_is_found_in_twenty_cases(defect, block, monkeypatch, tmp_path):
+def test_a_defect_is_found_in_twenty_cases(defect, small_block, monkeypatch, tmp_path):
     """Where the released method is gated against; and the sound one is the same."""
-    walk_instead(monkeypatch, block)
+    walk_instead(monkeypatch, small_block)
     keys = {"name": "no worse", "against": "released"} | defect.paired
     name = keys.pop("method")
     lines = "\n".join(f'{key} = "{value}"' for key, value in keys.items())
