@@ -84,9 +84,7 @@ def write_table(
     with replacing(path) as temporary:
         if is_csv(path):
             with temporary.open("wb") as file:
-                file.write(
-                    ",".join(table.column_names).encode() + b"\n"
-                )  # pyarrow quotes them
+                file.write(",".join(table.column_names).encode() + b"\n")  # pyarrow quotes them
                 pa_csv.write_csv(table, file, pa_csv.WriteOptions(include_header=False, quoting_style="none"))
             return
         pq.write_table(
