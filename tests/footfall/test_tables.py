@@ -1,7 +1,6 @@
 """Columns in files: what is written comes back, and nobody ever meets half a file."""
 
 import errno
-import json
 import os
 import stat
 
@@ -16,10 +15,10 @@ from hypothesis.extra import numpy as hnp
 from footfall.errors import InputError
 from footfall.tables import (
     META_KEY,
-    UNITS_KEY,
     numbers,
     read_meta,
     read_table,
+    read_units,
     replacing,
     require_columns,
     write_table,
@@ -52,7 +51,17 @@ def test_columns_units_and_provenance_come_back(tmp_path_factory, table, meta, s
         assert back[name].tobytes() == values.tobytes()
         assert back[name].flags.writeable
     assert found == meta
-    assert json.loads(pq.read_schema(path).metadata[UNITS_KEY]) == units
+    assert read_units(path) == units
+
+
+def test_only_the_columns_that_are_needed_are_read(tmp_path):
+    path = tmp_path / "x.parquet"
+    write_table(path, {name: np.arange(3.0) for name in "abc"}, {}, {"who": "me"})
+    columns, meta = read_table(path, ("c", "a"))
+    assert set(columns) == {"a", "c"}
+    assert meta == {"who": "me"}
+    with pytest.raises(InputError, match=r"x\.parquet: column 'd' is missing"):
+        read_table(path, ("a", "d"))
 
 
 @given(
