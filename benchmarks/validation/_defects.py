@@ -25,13 +25,14 @@ class Defect:
 
     Attributes
     ----------
-    methods : by the names that the gates of the closed loop know, with the mistake in them
-    found_by : which of those gates fails
+    methods : by the names that gates know, with the mistake in them
+    gates : name of the file of gates that finds it; found_by : which of them fails
     paired : keys of a gate that finds it against the sound method of the same name, in few cases
     """
 
     name: str
     methods: Mapping[str, Method]
+    gates: str
     found_by: str
     paired: Mapping[str, str] = field(default_factory=dict)
 
@@ -86,19 +87,28 @@ DEFECTS = (
     Defect(
         "a stride time 2 % too long",
         _hdr(long_strides),
+        "closed-loop",
         "HDR at rest is dead reckoning",
         {"method": "hdr-at-rest", "statistic": "same"},
     ),
-    Defect("the sign of A", _hdr(wrong_sign), "HDR keeps half of the units under 18 deg", {"method": "hdr"}),
+    Defect(
+        "the sign of A",
+        _hdr(wrong_sign),
+        "closed-loop",
+        "HDR keeps half of the units under 18 deg",
+        {"method": "hdr"},
+    ),
     Defect(
         "a bias that is not removed",
         _dead_reckoning(kept_bias),
-        "dead reckoning drifts no more than its sheet explains",
+        "dead-reckoning",
+        "dead reckoning keeps up with the filter",
         {"method": "pdr"},
     ),
     Defect(
         "tilt_gain 0",
         _dead_reckoning(no_tilt_gain),
+        "dead-reckoning",
         "dead reckoning knows its distance",
         {"method": "pdr", "metric": "distance_error_pct"},
     ),

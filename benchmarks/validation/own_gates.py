@@ -1,7 +1,7 @@
 """Footfall's own gates in full, and defects that they must find in 20 cases.
 
-Every file of gates that comes with Footfall is judged over all of its cases. Then the gates of the closed
-loop are judged over 20 units with a mistake in the methods (`_defects.py`), one after the other.
+Every file of gates that comes with Footfall is judged over all of its cases. Then gates are judged over 20
+units with a mistake in the methods (`_defects.py`), one after the other.
 
 python -m benchmarks.validation.own_gates
 """
@@ -41,13 +41,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
             out.print(part)
 
     defects = {
-        one.name: judged("closed-loop", chosen.processes, units=FEW, methods=one.methods) for one in DEFECTS
+        one.name: judged(one.gates, chosen.processes, units=FEW, methods=one.methods) for one in DEFECTS
     }
     table = new_table("defect", f"what fails in {FEW} cases", left=2)
     for name, found in defects.items():
         lines = [verdict_line(verdict) for verdict in found if verdict.verdict == "fail"]
         table.add_row(name, "\n".join(lines) or "nothing")
-    out.print(titled("Defects, and the gates of the closed loop", table))
+    out.print(titled("Defects, and the gates that find them", table))
     write_json(
         chosen.json,
         {

@@ -63,7 +63,7 @@ def gate(
 
     Exit code 0 when all gates pass, 1 when one fails, 3 when none fails and some are undecided.
 
-    The folder gets gate.json and cases.parquet.
+    The folder gets report.html, gate.json and cases.parquet.
     """
     from footfall.scenarios.report.gate_files import append_text, write_bytes, write_gate
     from footfall.scenarios.report.gates import cases_line, gate_document, gate_report

@@ -59,7 +59,8 @@ def test_people_get_a_table_and_the_folder(gates, cli, tmp_path):
     assert "heading_error_mean_deg" in out
     assert err.splitlines()[-1] == "Verdicts and cases are in out/gates"
     folder = tmp_path / "out" / "gates"
-    assert sorted(file.name for file in folder.iterdir()) >= ["cases.parquet", "gate.json"]
+    assert sorted(file.name for file in folder.iterdir()) == ["cases.parquet", "gate.json", "report.html"]
+    assert "HDR is good" in (folder / "report.html").read_text()
     table = pq.read_table(folder / "cases.parquet")
     assert set(table["method"].to_pylist()) == {"hdr", "pdr"}
     assert len(table) == 16

@@ -82,6 +82,7 @@ def test_a_comparison_is_of_ratios():
     assert found.scatter == pytest.approx(0.05, abs=0.02)
     assert verdict(1.2 * scattered, theirs, against="pdr").verdict == "fail"
     assert verdict(1.2 * scattered, theirs, against="pdr", margin_percent=40).verdict == "pass"
+    assert verdict(1.45 * theirs, theirs, against="pdr", margin_percent=40).verdict == "fail"
     found = verdict(1.2 * theirs, theirs, against="pdr")
     assert (found.estimate, found.low, found.high) == pytest.approx((20, 20, 20))
     assert verdict(0.4 * theirs, theirs, against="pdr", margin_percent=-50).verdict == "pass"
@@ -138,6 +139,9 @@ def test_one_of_many_gates_fails_by_holm():
     assert found[0].reason == (
         "10 cases lie beyond the limit, but by chance one of 5 gates may (Holm); about 20 would"
     )
+    assert found[0].needed == 20
+    low = weigh(gate(at_most=4.5), scores(TEN), None, 10)  # 4 of 10 within: 80 would decide, 150 by Holm
+    assert [decide([low, *[passing] * others])[0].needed for others in (0, 4)] == [80, 150]
     same = weigh(gate(statistic="same", against="b.parquet"), scores(TEN), scores(TEN), 10)
     assert decide([high, *[same] * 9])[0].verdict == "fail"  # where nothing is left to chance
 

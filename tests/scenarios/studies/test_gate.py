@@ -72,6 +72,13 @@ def test_every_gate_has_its_verdict(file):
     assert found[1].scatter == pytest.approx(np.std(np.log(errors["hdr"] / errors["pdr"]), ddof=1))
 
 
+def test_signs_do_not_count(file):
+    found = gate(file(HEAD + HALF.replace("15", "50") + 'metric = "distance_error_pct"\n'))
+    errors = found.rows.values("distance_error_pct")
+    assert min(errors) < 0
+    assert found[0].high == sorted(abs(errors))[8]
+
+
 def test_exit_codes(file):
     tight = HALF.replace("15", "0.0001").replace("half", "tight")
     assert gate(file(HEAD + HALF + tight)).exit_code == 1

@@ -47,6 +47,8 @@ def test_an_uncorrected_heading_is_gated_with_ten_cases_and_two_percent(read):
     found = read(CASES + '[[gates]]\nname = "a gate"\nmethod = "iez"\nagainst = "pdr"\n')
     assert found.units == 10
     assert found.margin_percent(found.gates[0]) == 2
+    found = read(CASES + '[[gates]]\nname = "a gate"\nmethod = "iez"\nagainst = "hdr"\n')
+    assert found.margin_percent(found.gates[0]) == 10
     found = read(CASES + AGAINST)
     assert found.units == 60
     assert found.margin_percent(found.gates[0]) == 10
