@@ -85,8 +85,14 @@ def write_table(
         )
 
 
-def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+def read_table(
+    path: str | os.PathLike[str], only: Sequence[str] | None = None
+) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """Read a Parquet or (by its ending) CSV file.
+
+    Parameters
+    ----------
+    only : the columns that are needed, of Parquet; others of a large file are left unread
 
     Returns
     -------
@@ -96,14 +102,17 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
     Raises
     ------
     InputError
-        The file is absent, unreadable, or a column is not numeric.
+        The file is absent, unreadable, or a column is not numeric; one of `only` is missing.
     """
     source = Path(path)
     if not source.is_file():
         raise InputError("no such file", source)
     kind = "CSV" if source.suffix.lower() == ".csv" else "Parquet"
     try:
-        table = pa_csv.read_csv(source) if kind == "CSV" else pq.ParquetFile(source).read()
+        if kind == "CSV":
+            table = pa_csv.read_csv(source)
+        else:
+            table = pq.ParquetFile(source).read(None if only is None else list(only))
         names = table.column_names
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise _unreadable(source, kind, error) from None
@@ -115,6 +124,7 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
         if not (pa.types.is_floating(holds) or pa.types.is_integer(holds) or pa.types.is_boolean(holds)):
             raise InputError(f"column {name!r} holds {holds}, expected numbers", source)
         columns[name] = numbers(column.chunks)
+    require_columns(str(source), columns, tuple(only or ()))
     return columns, _meta(source, table.schema)
 
 
@@ -127,10 +137,26 @@ def read_meta(path: str | os.PathLike[str]) -> dict[str, Any]:
         The file is absent or unreadable.
     """
     source = Path(path)
+    return _meta(source, _schema(source))
+
+
+def read_units(path: str | os.PathLike[str]) -> dict[str, str]:
+    """Column -> unit as a Parquet file says it; empty for a file that Footfall did not write.
+
+    Raises
+    ------
+    InputError
+        The file is absent or unreadable.
+    """
+    source = Path(path)
+    return _told(source, _schema(source), UNITS_KEY)
+
+
+def _schema(source: Path) -> Any:
     if not source.is_file():
         raise InputError("no such file", source)
     try:
-        return _meta(source, pq.read_schema(source))
+        return pq.read_schema(source)
     except (pa.ArrowException, OSError) as error:
         raise _unreadable(source, "Parquet", error) from None
 
@@ -170,13 +196,17 @@ def _unreadable(source: Path, kind: str, error: Exception) -> InputError:
 
 
 def _meta(source: Path, schema: Any) -> dict[str, Any]:
+    return _told(source, schema, META_KEY)
+
+
+def _told(source: Path, schema: Any, key: bytes) -> dict[str, Any]:
     try:
-        meta = json.loads((schema.metadata or {}).get(META_KEY, b"{}"))
+        found = json.loads((schema.metadata or {}).get(key, b"{}"))
     except ValueError:
-        meta = None
-    if not isinstance(meta, dict):
-        raise InputError(f"its metadata {META_KEY.decode()!r} is not a JSON object", source)
-    return meta
+        found = None
+    if not isinstance(found, dict):
+        raise InputError(f"its metadata {key.decode()!r} is not a JSON object", source)
+    return found
 
 
 def require_columns(source: str, columns: Columns, names: tuple[str, ...]) -> None:

@@ -1,7 +1,6 @@
 """Columns in files: what is written comes back, and nobody ever meets half a file."""
 
 import errno
-import json
 import os
 import stat
 
@@ -14,7 +13,15 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from footfall.errors import InputError
-from footfall.tables import META_KEY, UNITS_KEY, numbers, read_table, replacing, require_columns, write_table
+from footfall.tables import (
+    META_KEY,
+    numbers,
+    read_table,
+    read_units,
+    replacing,
+    require_columns,
+    write_table,
+)
 
 names = st.text(st.characters(codec="utf-8", exclude_characters="\0"), min_size=1, max_size=12)
 kinds = st.sampled_from([np.float64, np.float32, np.int64, np.int32, np.uint8, np.bool_])
@@ -43,7 +50,17 @@ def test_columns_units_and_provenance_come_back(tmp_path_factory, table, meta, s
         assert back[name].tobytes() == values.tobytes()
         assert back[name].flags.writeable
     assert found == meta
-    assert json.loads(pq.read_schema(path).metadata[UNITS_KEY]) == units
+    assert read_units(path) == units
+
+
+def test_only_the_columns_that_are_needed_are_read(tmp_path):
+    path = tmp_path / "x.parquet"
+    write_table(path, {name: np.arange(3.0) for name in "abc"}, {}, {"who": "me"})
+    columns, meta = read_table(path, ("c", "a"))
+    assert set(columns) == {"a", "c"}
+    assert meta == {"who": "me"}
+    with pytest.raises(InputError, match=r"x\.parquet: column 'd' is missing"):
+        read_table(path, ("a", "d"))
 
 
 def test_smooth_columns_are_small_without_a_dictionary_and_quantised_ones_with_one(tmp_path):
