@@ -53,6 +53,11 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         raise InputError(f"cannot be written ({error.strerror or error})", target) from None
 
 
+def is_csv(path: str | os.PathLike[str]) -> bool:
+    """Whether a file's name ends so; any other is Parquet."""
+    return Path(path).suffix.lower() == ".csv"
+
+
 def write_table(
     path: str | os.PathLike[str],
     columns: Columns,
@@ -61,7 +66,9 @@ def write_table(
     *,
     smooth: bool = False,
 ) -> None:
-    """Write equally long one-dimensional columns to Parquet.
+    """Write equally long one-dimensional columns to Parquet, or to CSV where the name ends so.
+
+    CSV holds the numbers to their last bit, and neither units nor provenance.
 
     Parameters
     ----------
@@ -75,6 +82,11 @@ def write_table(
     table = pa.table({name: _array(values) for name, values in columns.items()})
     split = [name for name, values in columns.items() if smooth and values.dtype.kind == "f"]
     with replacing(path) as temporary:
+        if is_csv(path):
+            with temporary.open("wb") as file:
+                file.write(",".join(table.column_names).encode() + b"\n")  # pyarrow quotes them
+                pa_csv.write_csv(table, file, pa_csv.WriteOptions(include_header=False, quoting_style="none"))
+            return
         pq.write_table(
             table.replace_schema_metadata(schema_meta),
             temporary,
@@ -104,10 +116,8 @@ def read_table(
     InputError
         The file is absent, unreadable, or a column is not numeric; one of `only` is missing.
     """
-    source = Path(path)
-    if not source.is_file():
-        raise InputError("no such file", source)
-    kind = "CSV" if source.suffix.lower() == ".csv" else "Parquet"
+    source = _file(path)
+    kind = "CSV" if is_csv(source) else "Parquet"
     try:
         if kind == "CSV":
             table = pa_csv.read_csv(source)
@@ -125,40 +135,66 @@ def read_table(
             raise InputError(f"column {name!r} holds {holds}, expected numbers", source)
         columns[name] = numbers(column.chunks)
     require_columns(str(source), columns, tuple(only or ()))
-    return columns, _meta(source, table.schema)
+    return columns, _told(source, table.schema, META_KEY)
 
 
 def read_meta(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """The provenance in a Parquet file, without its columns; empty for a file that Footfall did not write.
+    """The provenance in a Parquet file, without its columns; empty for CSV and for others' files.
 
     Raises
     ------
     InputError
         The file is absent or unreadable.
     """
-    source = Path(path)
-    return _meta(source, _schema(source))
+    return _in_schema(_file(path), META_KEY)
 
 
 def read_units(path: str | os.PathLike[str]) -> dict[str, str]:
-    """Column -> unit as a Parquet file says it; empty for a file that Footfall did not write.
+    """Column -> unit as a file says it; empty for CSV, and for a file that Footfall did not write.
 
     Raises
     ------
     InputError
         The file is absent or unreadable.
     """
-    source = Path(path)
-    return _told(source, _schema(source), UNITS_KEY)
+    return _in_schema(_file(path), UNITS_KEY)
 
 
-def _schema(source: Path) -> Any:
-    if not source.is_file():
-        raise InputError("no such file", source)
+def _in_schema(source: Path, key: bytes) -> dict[str, Any]:
+    if is_csv(source):
+        return {}
     try:
-        return pq.read_schema(source)
+        return _told(source, pq.read_schema(source), key)
     except (pa.ArrowException, OSError) as error:
         raise _unreadable(source, "Parquet", error) from None
+
+
+def column_names(path: str | os.PathLike[str]) -> list[str]:
+    """What the columns of a Parquet or CSV file are called.
+
+    Raises
+    ------
+    InputError
+        The file is absent or unreadable.
+    """
+    source = _file(path)
+    kind = "CSV" if is_csv(source) else "Parquet"
+    try:
+        if kind == "CSV":
+            with pa_csv.open_csv(source) as opened:
+                return list(opened.schema.names)
+        return list(pq.read_schema(source).names)
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
+        raise _unreadable(source, kind, error) from None
+
+
+def _file(path: str | os.PathLike[str]) -> Path:
+    source = Path(path)
+    if source.is_dir():
+        raise InputError("a folder, expected a file", source)
+    if not source.is_file():
+        raise InputError("no such file", source)
+    return source
 
 
 def numbers(chunks: Sequence[Any]) -> np.ndarray:
@@ -193,10 +229,6 @@ def _array(values: np.ndarray) -> Any:
 
 def _unreadable(source: Path, kind: str, error: Exception) -> InputError:
     return InputError(f"not a readable {kind} file ({str(error).splitlines()[0]})", source)
-
-
-def _meta(source: Path, schema: Any) -> dict[str, Any]:
-    return _told(source, schema, META_KEY)
 
 
 def _told(source: Path, schema: Any, key: bytes) -> dict[str, Any]:
