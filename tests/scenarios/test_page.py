@@ -142,8 +142,8 @@ def test_tables_hold_every_score_without_a_script(folder, page):
         "walk",
         "unit",
         "method",
-        "heading error, mean (deg)",
-        "heading error, final (deg)",
+        "mean heading error (deg)",
+        "final heading error (deg)",
     ]
     assert len(rows) == 1 + 2 * 3 + 3
     for cells, (row, method) in zip(rows[1:7], itertools.product(scores["walks"], METHODS), strict=True):

@@ -38,7 +38,7 @@
     mode: trace.mode,
     opacity: trace.opacity,
     line: { color: colour(trace.colour), width: trace.width, dash: trace.dash },
-    marker: { color: colour(trace.colour), size: trace.size, symbol: trace.symbol, line: { width: 0 } },
+    marker: { color: colour(trace.colour), size: trace.size, symbol: trace.symbol, line: { width: trace.symbol.endsWith("-open") ? 2 : 0 } },
     ...(trace.hover.length
       ? { hoverinfo: "text", hovertext: Array.from(numbers(trace.x), (_, i) => label(trace, i)) }
       : { hoverinfo: "skip" }),
@@ -54,7 +54,7 @@
     ...(told.ticks.length
       ? { tickvals: told.ticks.map((tick) => tick[0]), ticktext: told.ticks.map((tick) => escaped(tick[1])) }
       : { nticks: narrow.matches ? 5 : 8 }),
-    ...(told.bounds ? { range: told.bounds } : {}),
+    ...(told.bounds ? { range: told.log ? told.bounds.map(Math.log10) : told.bounds } : {}),
   });
 
   const layout = (chart) => ({
@@ -69,11 +69,16 @@
     uirevision: JSON.stringify(chart.when), // what was zoomed stays so while methods come and go
     xaxis: axis(chart.x),
     yaxis: { ...axis(chart.y), ...(chart.equal ? { scaleanchor: "x" } : {}) },
-    shapes: (chart.marks || []).map(([from, to, name, dash]) => ({
-      type: from === to ? "line" : "rect", x0: from, x1: to, y0: 0, y1: 1, yref: "paper", layer: "below",
-      line: { color: colour(name), width: from === to ? 2 : 0, dash },
-      fillcolor: colour(name), opacity: from === to ? 1 : 0.15,
-    })),
+    shapes: chart.marks.map(({ axis, low, high, colour: name, dash }) => {
+      const across = axis === "x" ? "y" : "x", line = low === high;
+      return {
+        type: line ? "line" : "rect", layer: line ? "above" : "below",
+        [`${axis}0`]: low, [`${axis}1`]: high,
+        [`${across}0`]: 0, [`${across}1`]: 1, [`${across}ref`]: "paper",
+        line: { color: colour(name), width: line ? 2 : 0, dash },
+        fillcolor: colour(name), opacity: line ? 1 : 0.2,
+      };
+    }),
   });
 
   const config = {
