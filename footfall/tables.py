@@ -135,7 +135,7 @@ def read_table(
             raise InputError(f"column {name!r} holds {holds}, expected numbers", source)
         columns[name] = numbers(column.chunks)
     require_columns(str(source), columns, tuple(only or ()))
-    return columns, _told(source, table.schema, META_KEY)
+    return columns, _meta(source, table.schema)
 
 
 def read_meta(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -146,25 +146,25 @@ def read_meta(path: str | os.PathLike[str]) -> dict[str, Any]:
     InputError
         The file is absent or unreadable.
     """
-    return _in_schema(_file(path), META_KEY)
+    source = _file(path)
+    return {} if is_csv(source) else _meta(source, _schema(source))
 
 
 def read_units(path: str | os.PathLike[str]) -> dict[str, str]:
-    """Column -> unit as a file says it; empty for CSV, and for a file that Footfall did not write.
+    """Column -> unit as a Parquet file says it; empty for CSV and for others' files.
 
     Raises
     ------
     InputError
         The file is absent or unreadable.
     """
-    return _in_schema(_file(path), UNITS_KEY)
+    source = _file(path)
+    return {} if is_csv(source) else _told(source, _schema(source), UNITS_KEY)
 
 
-def _in_schema(source: Path, key: bytes) -> dict[str, Any]:
-    if is_csv(source):
-        return {}
+def _schema(source: Path) -> Any:
     try:
-        return _told(source, pq.read_schema(source), key)
+        return pq.read_schema(source)
     except (pa.ArrowException, OSError) as error:
         raise _unreadable(source, "Parquet", error) from None
 
@@ -178,14 +178,13 @@ def column_names(path: str | os.PathLike[str]) -> list[str]:
         The file is absent or unreadable.
     """
     source = _file(path)
-    kind = "CSV" if is_csv(source) else "Parquet"
+    if not is_csv(source):
+        return list(_schema(source).names)
     try:
-        if kind == "CSV":
-            with pa_csv.open_csv(source) as opened:
-                return list(opened.schema.names)
-        return list(pq.read_schema(source).names)
+        with pa_csv.open_csv(source) as opened:
+            return list(opened.schema.names)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        raise _unreadable(source, kind, error) from None
+        raise _unreadable(source, "CSV", error) from None
 
 
 def _file(path: str | os.PathLike[str]) -> Path:
@@ -229,6 +228,10 @@ def _array(values: np.ndarray) -> Any:
 
 def _unreadable(source: Path, kind: str, error: Exception) -> InputError:
     return InputError(f"not a readable {kind} file ({str(error).splitlines()[0]})", source)
+
+
+def _meta(source: Path, schema: Any) -> dict[str, Any]:
+    return _told(source, schema, META_KEY)
 
 
 def _told(source: Path, schema: Any, key: bytes) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from footfall.cli.check import check
 from footfall.cli.export import export
 from footfall.cli.gate import gate
 from footfall.cli.list import list_
+from footfall.cli.map import map_
 from footfall.cli.parameters import parameters
 from footfall.cli.record import record
 from footfall.cli.render import render
@@ -30,6 +31,7 @@ from footfall.cli.sensitivity import sensitivity
 from footfall.cli.sweep import sweep
 from footfall.cli.terminal import perform
 from footfall.cli.track import track
+from footfall.cli.tune import tune
 from footfall.cli.walk import walk
 
 app = typer.Typer(
@@ -71,6 +73,8 @@ COMMANDS = (
     sweep,
     gate,
     sensitivity,
+    map_,
+    tune,
     report,
     export,
     allan,

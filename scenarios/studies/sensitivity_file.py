@@ -1,4 +1,4 @@
-"""The file of a sensitivity study: what is varied, of which method's error, over which cases."""
+"""The file of a sensitivity study: what is varied, of which methods' error, over which cases."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from footfall.addresses import pattern
 from footfall.errors import InputError
 from footfall.scenarios.parameters import Documents, documents, parameters, with_values
 from footfall.scenarios.studies.factors import Factor, FactorTable, factors_of, points_at
-from footfall.scenarios.studies.points import CasesTable, Over, require_allowed, require_metric
+from footfall.scenarios.studies.points import Over, Worn, require_allowed, require_metric
 from footfall.toml import Strict, checked, parse_toml
 
 FOLDER = Path(__file__).resolve().parent / "stock" / "sensitivity"  # of the studies that come with Footfall
@@ -43,17 +43,17 @@ class SobolTable(Strict):
 class SensitivityFile(Strict):
     """A study's file (docs/sensitivity.md)."""
 
-    description: str = ""
+    description: Annotated[str, Field(min_length=1)]
     scenario: str
     imu: str | None = None
-    method: str = "hdr"
+    methods: Annotated[tuple[str, ...], Field(strict=False, min_length=1)] = ("hdr",)
     metric: str = "heading_error_mean_deg"
     over: Over = "median"
     of: Literal["ratio", "difference"] = "ratio"
     fidelity: Fidelity = "full"
     units_as_factor: bool = False
     seed: Annotated[int, Field(ge=0)] = 1
-    cases: CasesTable = CasesTable()
+    cases: Worn = Worn()
     set: dict[str, Any] = Field(default_factory=dict)
     parameters: dict[str, FactorTable]
     morris: MorrisTable | None = None
@@ -76,7 +76,7 @@ class Study:
     ----------
     name : of its file
     file : what stands there
-    base : the documents, with its method and all that it sets
+    base : the documents, with its methods and all that it sets
     factors : what is varied, the unit last where it is a factor
     """
 
@@ -134,7 +134,7 @@ def build_study(name: str, table: Mapping[str, Any], source: str) -> Study:
     file = checked(table, SensitivityFile, source)
     try:
         require_metric(file.metric)
-        base = documents(file.scenario, imu=file.imu, methods=[file.method])
+        base = documents(file.scenario, imu=file.imu, methods=file.methods)
         base = with_values(base, file.set)
         factors = with_units(base, factors_of(file.parameters))
         require_allowed(base, factors)
