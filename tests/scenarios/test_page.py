@@ -158,6 +158,19 @@ def test_tables_hold_every_score_without_a_script(folder, page):
     assert rows[8][3] == f"{scores['mean']['hdr']['heading_error_mean_deg']:.1f}"
 
 
+def test_tiles_tell_the_mean_error_and_what_a_method_makes_of_it(tmp_path, page):
+    """hdr's error is twice pdr's, that of the third method three times."""
+    tiles = re.findall(r"<strong>(.*?)</strong><span>(.*?)</span>", page.text)
+    assert [more.rpartition("; ")[2] for _, more in tiles[1:]] == [
+        "2.0 times larger than uncorrected",
+        "3.0 times larger than uncorrected",
+    ]
+    assert tiles[0][0] == "0.3 deg"
+    assert "uncorrected" not in tiles[0][1]
+    better = Page(write_page(run_folder(tmp_path / "run", ("hdr", "pdr"), 1)))
+    assert "; 2.0 times smaller than uncorrected" in better.text
+
+
 def test_other_units_and_noises_are_told_where_a_run_has_them(tmp_path):
     spread = {"mean": 3.0, "median": 2.5, "p90": 7.25}
     extent = {"median": 2.5, "smallest": 1.0, "largest": 9.0}

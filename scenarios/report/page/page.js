@@ -7,6 +7,8 @@
   const touch = matchMedia("(hover: none), (pointer: coarse)");
   const narrow = matchMedia("(max-width: 760px)");
 
+  const FONT = "system-ui, sans-serif";
+
   const decoded = new Map();
   const numbers = (index) => {
     if (!decoded.has(index)) {
@@ -60,11 +62,11 @@
   const layout = (chart) => ({
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: "rgba(0,0,0,0)",
-    font: { color: colour("ink"), family: "system-ui, sans-serif", size: 12 },
+    font: { color: colour("ink"), family: FONT, size: 12 },
     margin: { l: 8, r: 12, t: 8, b: 8 },
     showlegend: false,
     hovermode: "closest",
-    hoverlabel: { bgcolor: colour("card"), bordercolor: colour("soft"), font: { color: colour("ink") }, align: "left" },
+    hoverlabel: { bgcolor: colour("card"), bordercolor: colour("soft"), font: { color: colour("ink"), family: FONT }, align: "left" },
     dragmode: touch.matches ? false : "zoom",
     uirevision: JSON.stringify(chart.when), // what was zoomed stays so while methods come and go
     xaxis: axis(chart.x),

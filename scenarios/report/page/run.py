@@ -289,9 +289,10 @@ def _tiles(mean: Mapping[str, Mapping[str, float]], colours: Mapping[str, str]) 
     made = []
     for name, score in mean.items():
         more = f"mean heading error, {score['heading_error_final_deg']:.1f} deg at the end"
-        if name != "pdr" and "pdr" in mean and score["heading_error_mean_deg"] > 0:
-            times = mean["pdr"]["heading_error_mean_deg"] / score["heading_error_mean_deg"]
-            more += f"; {times:.1f} times smaller than uncorrected"
+        ours, theirs = score["heading_error_mean_deg"], mean.get("pdr", score)["heading_error_mean_deg"]
+        if name != "pdr" and "pdr" in mean and min(ours, theirs) > 0:
+            times, word = (theirs / ours, "smaller") if ours <= theirs else (ours / theirs, "larger")
+            more += f"; {times:.1f} times {word} than uncorrected"
         made.append((name, colours[name], f"{score['heading_error_mean_deg']:.1f} deg", more))
     return html.tiles(made)
 
