@@ -1,6 +1,7 @@
 """Pages of sweeps and of gates, as their source tells them."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -117,6 +118,9 @@ def test_tables_tell_methods_settings_and_failures(study):
     assert len(rows) == 1 + 3 * 2 * 3
     assert ["one-arc", "nimu", "5", "0.1", "hdr", "10", "1"] in [row[:7] for row in rows]
     assert ["one-arc", "nimu", "5", "", "pdr", "10", "0", "50.00"] in [row[:8] for row in rows]
+    heads = re.findall(r'<th scope="col"( class="n")?>([^<]*)', study.text)
+    assert (' class="n"', "theta w") in heads  # also where the first row has no value
+    assert ("", "method") in heads
     assert study.table("Reasons")[1] == ["6", "hdr", "track", "the filter &lt;b&gt;diverged&lt;/b&gt;"]
     assert len(study.table("Failed cases")) == 1 + 6
     assert "180 rows, of which 6 failed" in study.text
