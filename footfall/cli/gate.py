@@ -63,7 +63,7 @@ def gate(
 
     Exit code 0 when all gates pass, 1 when one fails, 3 when none fails and some are undecided.
 
-    The folder gets gate.json and cases.parquet.
+    The folder gets report.html to look at, gate.json and cases.parquet.
     """
     from footfall.scenarios.report.gate_files import append_text, write_bytes, write_gate
     from footfall.scenarios.report.gates import cases_line, gate_document, gate_report
@@ -116,7 +116,7 @@ def gate(
     else:
         for part in gate_report(judged):
             OUT.print(part)
-    say(f"Verdicts and cases are in {folder}")
+    say(f"Verdicts and cases are in {folder}; look at {folder / 'report.html'}")
     if judged.exit_code:
         raise typer.Exit(judged.exit_code)
 

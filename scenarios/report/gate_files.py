@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from footfall.errors import InputError
+from footfall.scenarios.report.page import write_page
 from footfall.scenarios.studies.baseline import write_baseline
 from footfall.scenarios.studies.gate import Judged
 from footfall.tables import replacing
 
 
 def write_gate(judged: Judged, document: Mapping[str, Any], folder: Path) -> None:
-    """gate.json and cases.parquet, which is a baseline, into the existing `folder`.
+    """gate.json, cases.parquet, which is a baseline, and their page, into the existing `folder`.
 
     Raises
     ------
@@ -23,6 +24,7 @@ def write_gate(judged: Judged, document: Mapping[str, Any], folder: Path) -> Non
     """
     write_baseline(judged.rows, folder / "cases.parquet")
     write_bytes((json.dumps(document, indent=2, allow_nan=False) + "\n").encode(), folder / "gate.json")
+    write_page(folder)
 
 
 def write_bytes(content: bytes, file: Path) -> None:
