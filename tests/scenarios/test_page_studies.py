@@ -149,6 +149,20 @@ def test_a_study_without_tracks_axes_or_failures_has_a_page(tmp_path):
     assert "No case failed." in page.text
 
 
+def test_a_study_whose_every_case_failed_has_a_page(tmp_path):
+    page = Page(write_page(sweep_folder(tmp_path / "study", fail="all")))
+    assert "180 rows, of which 180 failed" in page.text
+    assert page.table("All cases of each method")[1][:4] == ["pdr", "60", "60", "–"]
+    _, y, _ = page.trace(RADIUS, "pdr", **MEAN)
+    assert np.isnan(y).all()
+
+
+def test_gates_whose_every_case_failed_have_a_page(tmp_path):
+    page = Page(write_page(gate_folder(tmp_path / "gates", fail=20)))
+    assert "20 failed cases count as infinitely bad" in page.text
+    assert marks(page, "gate-0") == []
+
+
 def test_no_text_of_a_study_becomes_markup(tmp_path):
     folder = sweep_folder(tmp_path / "study", methods=("pdr", NASTY), name=NASTY, description=NASTY)
     text = Page(write_page(folder)).text
