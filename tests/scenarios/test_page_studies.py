@@ -47,6 +47,19 @@ def test_values_stand_side_by_side_in_the_studys_order_and_methods_beside_each_o
         assert pdr[np.round(pdr) == at].max() < hdr[np.round(hdr) == at].min()
 
 
+@pytest.mark.parametrize(
+    ("radii", "labels"),
+    [
+        ((0.0612345, 1.0, 20000.0), ["0.0612", "1", "2e+04"]),
+        ((1.0001, 1.0002, 5.0), ["1.0001", "1.0002", "5"]),  # as long as it takes to tell them apart
+    ],
+)
+def test_values_are_labelled_briefly(tmp_path, radii, labels):
+    page = Page(write_page(sweep_folder(tmp_path / "study", radii=radii, units=1, kind="number")))
+    (chart,) = page.charts(RADIUS, **MEAN)
+    assert [label for _, label in chart["x"]["ticks"]] == labels
+
+
 def test_cases_stand_behind_medians_and_nine_tenths(study):
     """Of hdr at a radius: two sheets, two thetas, ten units, of which one failed with one theta."""
     _, cases, hover = study.trace(RADIUS, "hdr", **MEAN)

@@ -173,7 +173,10 @@ def _charts(cases: Cases, panels: Sequence[_Panel], looks: Looks) -> Iterator[Ch
 def _axis(panel: _Panel) -> Axis:
     if panel.levels is None:
         return scale(panel.label, np.array([value for value in panel.values if value != ""], float))
-    ticks = tuple((float(i), html.told(level)) for i, level in enumerate(panel.levels))
+    labels = [f"{level:.3g}" if isinstance(level, float) else html.told(level) for level in panel.levels]
+    if len(set(labels)) < len(labels):
+        labels = [html.told(level) for level in panel.levels]
+    ticks = tuple((float(i), label) for i, label in enumerate(labels))
     return Axis(panel.label, ticks=ticks, bounds=(-0.6, len(panel.levels) - 0.4))
 
 
