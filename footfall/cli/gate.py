@@ -116,7 +116,7 @@ def gate(
     else:
         for part in gate_report(judged):
             OUT.print(part)
-    say(f"Verdicts and cases are in {folder}")
+    say(f"Verdicts and cases are in {folder}; look at {folder / 'report.html'}")
     if judged.exit_code:
         raise typer.Exit(judged.exit_code)
 

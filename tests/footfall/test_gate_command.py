@@ -57,7 +57,7 @@ def test_people_get_a_table_and_the_folder(gates, cli, tmp_path):
     assert any("<= +500 %" in line for line in lines)
     assert "hdr against pdr: log ratios scatter by" in out
     assert "heading_error_mean_deg" in out
-    assert err.splitlines()[-1] == "Verdicts and cases are in out/gates"
+    assert err.splitlines()[-1] == "Verdicts and cases are in out/gates; look at out/gates/report.html"
     folder = tmp_path / "out" / "gates"
     assert sorted(file.name for file in folder.iterdir()) == ["cases.parquet", "gate.json", "report.html"]
     assert "HDR is good" in (folder / "report.html").read_text()

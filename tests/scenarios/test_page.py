@@ -12,7 +12,7 @@ import pytest
 from footfall.errors import InputError
 from footfall.pdr.track import read_track
 from footfall.scenarios.report.page import write_page
-from footfall.scenarios.report.page.charts import Trace, frame
+from footfall.scenarios.report.page.charts import Trace, frame, looks_of
 from footfall.tables import read_table, write_table
 from tests.helpers.commands import expect_one_sentence
 from tests.helpers.pages import METHODS, NASTY, Page, budget_of, run_folder
@@ -316,7 +316,18 @@ sys.exit("plotly" in sys.modules)
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
 
 
-# Colours
+# Looks
+
+
+@pytest.mark.parametrize("count", [1, 9, 10, 17, 40])
+def test_no_two_methods_look_alike(count):
+    names = ["hdr", "pdr", "ihde", "hde", "hdr-basic", *(f"mine-{i}" for i in range(40))][:count]
+    looks = looks_of(names)
+    assert list(looks) == names
+    assert len(set(looks.values())) == count
+    assert looks["hdr"][0] == "s1"  # as in the figures
+    if count <= 9:
+        assert len({colour for colour, _ in looks.values()}) == count
 
 
 def shades():

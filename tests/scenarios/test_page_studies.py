@@ -1,6 +1,7 @@
 """Pages of sweeps and of gates, as their source tells them."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -44,6 +45,19 @@ def test_values_stand_side_by_side_in_the_studys_order_and_methods_beside_each_o
     assert np.abs(pdr - np.round(pdr)).max() < 0.5
     for at in range(3):
         assert pdr[np.round(pdr) == at].max() < hdr[np.round(hdr) == at].min()
+
+
+@pytest.mark.parametrize(
+    ("radii", "labels"),
+    [
+        ((0.0612345, 1.0, 20000.0), ["0.0612", "1", "2e+04"]),
+        ((1.0001, 1.0002, 5.0), ["1.0001", "1.0002", "5"]),  # as long as it takes to tell them apart
+    ],
+)
+def test_values_are_labelled_briefly(tmp_path, radii, labels):
+    page = Page(write_page(sweep_folder(tmp_path / "study", radii=radii, units=1, kind="number")))
+    (chart,) = page.charts(RADIUS, **MEAN)
+    assert [label for _, label in chart["x"]["ticks"]] == labels
 
 
 def test_cases_stand_behind_medians_and_nine_tenths(study):
@@ -117,6 +131,9 @@ def test_tables_tell_methods_settings_and_failures(study):
     assert len(rows) == 1 + 3 * 2 * 3
     assert ["one-arc", "nimu", "5", "0.1", "hdr", "10", "1"] in [row[:7] for row in rows]
     assert ["one-arc", "nimu", "5", "", "pdr", "10", "0", "50.00"] in [row[:8] for row in rows]
+    heads = re.findall(r'<th scope="col"( class="n")?>([^<]*)', study.text)
+    assert (' class="n"', "theta w") in heads  # also where the first row has no value
+    assert ("", "method") in heads
     assert study.table("Reasons")[1] == ["6", "hdr", "track", "the filter &lt;b&gt;diverged&lt;/b&gt;"]
     assert len(study.table("Failed cases")) == 1 + 6
     assert "180 rows, of which 6 failed" in study.text
@@ -143,6 +160,20 @@ def test_a_study_without_tracks_axes_or_failures_has_a_page(tmp_path):
     assert not page.charts("track")
     assert [chart["x"]["title"] for chart in page.data["charts"]][::6] == ["IMU", "theta w (deg/s)"]
     assert "No case failed." in page.text
+
+
+def test_a_study_whose_every_case_failed_has_a_page(tmp_path):
+    page = Page(write_page(sweep_folder(tmp_path / "study", fail="all")))
+    assert "180 rows, of which 180 failed" in page.text
+    assert page.table("All cases of each method")[1][:4] == ["pdr", "60", "60", "–"]
+    _, y, _ = page.trace(RADIUS, "pdr", **MEAN)
+    assert np.isnan(y).all()
+
+
+def test_gates_whose_every_case_failed_have_a_page(tmp_path):
+    page = Page(write_page(gate_folder(tmp_path / "gates", fail=20)))
+    assert "20 failed cases count as infinitely bad" in page.text
+    assert marks(page, "gate-0") == []
 
 
 def test_no_text_of_a_study_becomes_markup(tmp_path):

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from footfall.scenarios.report.page.document import Page
 
 REPORT = "report.html"
+Maker = Callable[[Path, Mapping[str, Any]], "Page"]
 
 
 def write_page(folder: str | os.PathLike[str]) -> Path:
@@ -46,27 +47,45 @@ def write_page(folder: str | os.PathLike[str]) -> Path:
 
 
 def _page(folder: Path) -> Page:
-    from footfall.scenarios.report.page.gate import gate_page
-    from footfall.scenarios.report.page.run import run_page
-    from footfall.scenarios.report.page.sweep import sweep_page
-
-    kinds: dict[str, Callable[[Path, Mapping[str, Any]], Page]] = {
-        "scores.json": run_page,
-        "study.json": sweep_page,
-        "gate.json": gate_page,
-    }
     if not folder.is_dir():
         raise InputError("no such folder", folder)
-    name = next((name for name in kinds if (folder / name).is_file()), None)
-    if name is None:
-        raise InputError(f"no results to report: expected {', '.join(kinds)} in it", folder)
-    file = folder / name
+    kind = next((name for name in _KINDS if (folder / name).is_file()), None)
+    if kind is None:
+        raise InputError(f"no results to report: expected {', '.join(_KINDS)} in it", folder)
+    file, make = folder / kind, _KINDS[kind]()
     try:
-        told = json.loads(file.read_text(encoding="utf-8"))
-        return kinds[name](folder, told)
+        return make(folder, json.loads(file.read_text(encoding="utf-8")))
     except InputError:
         raise
     except (ValueError, OSError) as error:
         raise InputError(f"not a readable JSON file ({error})", file) from None
     except (LookupError, TypeError, AttributeError) as error:
         raise InputError(f"not as Footfall writes it ({type(error).__name__}: {error})", file) from None
+
+
+# Each is imported when there is one of its kind.
+
+
+def _of_run() -> Maker:
+    from footfall.scenarios.report.page.run import run_page
+
+    return run_page
+
+
+def _of_sweep() -> Maker:
+    from footfall.scenarios.report.page.sweep import sweep_page
+
+    return sweep_page
+
+
+def _of_gate() -> Maker:
+    from footfall.scenarios.report.page.gate import gate_page
+
+    return gate_page
+
+
+_KINDS: dict[str, Callable[[], Maker]] = {
+    "scores.json": _of_run,
+    "study.json": _of_sweep,
+    "gate.json": _of_gate,
+}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ class Cases:
     """Rows of scores by column: `numbers` are NaN and `texts` empty where there is none."""
 
     table: Any
+    _read: dict[str, np.ndarray] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
     def read(cls, file: Path) -> Cases:
@@ -39,12 +40,15 @@ class Cases:
 
     def numbers(self, name: str) -> np.ndarray:
         """(n,) of a column, as floats."""
-        values = self.table[name].to_pylist()
-        return np.array([np.nan if value is None else float(value) for value in values])
+        values = self.texts(name)
+        return np.array([np.nan if value == "" else float(value) for value in values])
 
     def texts(self, name: str) -> np.ndarray:
         """(n,) of a column, as they are; of numbers, too."""
-        return np.array(["" if value is None else value for value in self.table[name].to_pylist()], object)
+        if name not in self._read:
+            values = self.table[name].to_pylist()
+            self._read[name] = np.array(["" if value is None else value for value in values], object)
+        return self._read[name]
 
     def scores(self, name: str) -> np.ndarray:
         """(n,) magnitudes of a score; NaN where a case failed."""

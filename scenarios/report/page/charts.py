@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from footfall.scenarios.report.page.html import MARKS
 from footfall.scenarios.report.style import COLOURS, MORE, colours_of
 
 SOFT, INK = "soft", "ink"  # colours of truth and of sums
@@ -20,6 +21,7 @@ SLOTS = tuple(
 _WIDE = 30.0  # of the largest value over the smallest: from here on an axis is logarithmic
 
 Numbers = Sequence[float] | np.ndarray
+Looks = Mapping[str, tuple[str, str]]  # method -> colour and marker
 
 
 @dataclass(frozen=True)
@@ -162,12 +164,18 @@ def thinned(*columns: np.ndarray, most: int = 300) -> list[np.ndarray]:
     return [column[kept] for column in columns]
 
 
-def slots_of(methods: Sequence[str]) -> dict[str, str]:
-    """A colour of page.css for each method: the shade of the one that it has in the figures."""
-    return {name: f"s{SLOTS.index(colour)}" for name, colour in colours_of(methods).items()}
+def looks_of(methods: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """A colour of page.css and a marker for each method: no two have both alike.
 
-
-def symbols_of(methods: Sequence[str]) -> dict[str, str]:
-    """A marker for each method, for those to whom colours say little."""
-    marks = ("circle", "square", "diamond", "triangle-up", "cross", "star", "hexagon", "triangle-down")
-    return {name: marks[i % len(marks)] for i, name in enumerate(methods)}
+    Colours are shades of those that the methods have in the figures; of more methods than there are colours
+    they come round again, with other markers.
+    """
+    looks: dict[str, tuple[str, str]] = {}
+    marks, used = tuple(MARKS), set()
+    for i, (name, colour) in enumerate(colours_of(methods).items()):
+        slot = SLOTS.index(colour)
+        slot = i % len(SLOTS) if slot in used else slot
+        used.add(slot)
+        turned = marks[i % len(marks) :] + marks
+        looks[name] = (f"s{slot}", next(mark for mark in turned if (f"s{slot}", mark) not in looks.values()))
+    return {name: looks[name] for name in methods}

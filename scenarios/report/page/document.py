@@ -72,7 +72,9 @@ def render(page: Page) -> str:
         style=_ours("page.css"),
         plotly=get_plotlyjs(),
         # "</script>" in a text must not end the element that it stands in.
-        data=json.dumps(chart_data(page.charts), separators=(",", ":")).replace("<", "\\u003c"),
+        data=json.dumps(chart_data(page.charts), separators=(",", ":"), allow_nan=False).replace(
+            "<", "\\u003c"
+        ),
         tables=_ours("tables.js"),
         script=_ours("page.js"),
     )

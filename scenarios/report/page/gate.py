@@ -16,7 +16,18 @@ from footfall.scenarios.judge.verdict import Verdict as Gate
 from footfall.scenarios.judge.verdict import figure, is_change, told
 from footfall.scenarios.report.page import html
 from footfall.scenarios.report.page.cases import Cases
-from footfall.scenarios.report.page.charts import INK, SOFT, Axis, Chart, Hover, Mark, Trace, scale, slots_of
+from footfall.scenarios.report.page.charts import (
+    INK,
+    SOFT,
+    Axis,
+    Chart,
+    Hover,
+    Looks,
+    Mark,
+    Trace,
+    looks_of,
+    scale,
+)
 from footfall.scenarios.report.page.document import Page, Section, again, sentence, versions
 from footfall.scenarios.report.page.scores import (
     LABELS,
@@ -55,7 +66,7 @@ def gate_page(folder: Path, document: Mapping[str, Any]) -> Page:
     """
     cases = Cases.read(folder / "cases.parquet")
     gates = [_gate(row) for row in document["gates"]]
-    colours = slots_of(list(dict.fromkeys(cases.texts("method"))))
+    looks = looks_of(list(dict.fromkeys(cases.texts("method"))))
     drawn = {f"gate-{i}": _drawn(gate, cases) for i, gate in enumerate(gates)}
     about = document["cases"]
     counts = {
@@ -69,13 +80,13 @@ def gate_page(folder: Path, document: Mapping[str, Any]) -> Page:
     lead = f"{sentence(document.get('description'))}{where} {ended}"
     sections = (
         Section("verdicts", "Verdicts", _verdicts(gates, document.get("confidence", 0.95))),
-        Section("cases", "Cases", _figures(drawn, colours)),
+        Section("cases", "Cases", _figures(drawn, looks)),
         Section("scores", "Scores", _scores(cases)),
         Section("failures", "Failures", _failures(cases)),
         Section("origin", "Seeds and versions", html.pairs("Seeds", seeds) + versions(document)),
         Section("again", "Make it again", again(document, "gate.json")),
     )
-    return Page("gate", document["name"], lead, sections, list(_charts(drawn, colours)))
+    return Page("gate", document["name"], lead, sections, list(_charts(drawn, looks)))
 
 
 def _gate(row: Mapping[str, Any]) -> Gate:
@@ -147,7 +158,7 @@ def _keys(cases: Cases) -> list[tuple[Any, ...]]:
     return list(zip(*(cases.texts(name) for name in _CASE), strict=True))
 
 
-def _figures(drawn: Mapping[str, _Drawn | None], colours: Mapping[str, str]) -> str:
+def _figures(drawn: Mapping[str, _Drawn | None], looks: Looks) -> str:
     made, missing = [], []
     for place, one in drawn.items():
         if one is None:
@@ -155,7 +166,7 @@ def _figures(drawn: Mapping[str, _Drawn | None], colours: Mapping[str, str]) -> 
             continue
         lost = int(np.isinf(one.values).sum())
         failed = f" {lost} failed cases count as infinitely bad and are not drawn." if lost else ""
-        entries = {"a case": colours[one.gate.method], "estimate and its bounds": SOFT, "limit": INK}
+        entries = {"a case": looks[one.gate.method][0], "estimate and its bounds": SOFT, "limit": INK}
         caption = f"{_WORDS[one.gate.verdict]}. Each point is a case, in order.{failed}"
         made.append(html.figure(place, one.gate.name, caption, legend=html.legend(entries)))
     told = "Not drawn: a gate of sameness, or one against a baseline, whose cases are in a file of their own."
@@ -164,7 +175,7 @@ def _figures(drawn: Mapping[str, _Drawn | None], colours: Mapping[str, str]) -> 
     )
 
 
-def _charts(drawn: Mapping[str, _Drawn | None], colours: Mapping[str, str]) -> Iterator[Chart]:
+def _charts(drawn: Mapping[str, _Drawn | None], looks: Looks) -> Iterator[Chart]:
     for place, one in drawn.items():
         if one is None:
             continue
@@ -180,7 +191,7 @@ def _charts(drawn: Mapping[str, _Drawn | None], colours: Mapping[str, str]) -> I
             Hover("share of the cases", y, 0, "%"),
             *one.cases.where(there).hover(),
         )
-        points = Trace(gate.method, x, y, colours[gate.method], mode="markers", size=7, hover=hover)
+        points = Trace(gate.method, x, y, looks[gate.method][0], mode="markers", size=7, hover=hover)
         yield Chart(
             place,
             scale(title, x),

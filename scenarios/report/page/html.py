@@ -19,6 +19,16 @@ class Number:
 
 
 Cell = str | Number
+MARKS = {
+    "circle": "●",
+    "square": "■",
+    "diamond": "◆",
+    "triangle-up": "▲",
+    "cross": "✚",
+    "star": "★",
+    "hexagon": "⬢",
+    "triangle-down": "▼",
+}
 _LONG = 32  # letters of a text that may be broken into lines
 
 
@@ -65,11 +75,10 @@ def table(
 
     Parameters
     ----------
-    columns : their heads; those of numbers, by the first row, stand to the right
+    columns : their heads; those of numbers stand to the right
     foot : rows that stay below, means of the others say
     """
-    first = next(iter((*rows, *foot)), ())
-    right = [isinstance(cell, Number) for cell in first] or [False] * len(columns)
+    right = [any(isinstance(row[i], Number) for row in rows) for i in range(len(columns))]
     heads = "".join(
         f'<th scope="col"{_side(side)}>{text(column)}</th>'
         for column, side in zip(columns, right, strict=True)
@@ -138,9 +147,9 @@ def radios(name: str, title: str, options: Mapping[str, str]) -> str:
     return _choice(name, title, options, "radio", {})
 
 
-def boxes(name: str, title: str, options: Mapping[str, str], colours: Mapping[str, str]) -> str:
-    """Choose any of value -> label, with a colour each; all are chosen."""
-    return _choice(name, title, options, "checkbox", colours)
+def boxes(name: str, title: str, looks: Mapping[str, tuple[str, str]]) -> str:
+    """Choose any of value -> its colour and its mark; all are chosen."""
+    return _choice(name, title, {value: value for value in looks}, "checkbox", looks)
 
 
 def controls(*choices: str, kept: bool = True) -> str:
@@ -148,11 +157,14 @@ def controls(*choices: str, kept: bool = True) -> str:
     return f'<form class="controls{" kept" if kept else ""}">{"".join(choices)}</form>\n'
 
 
-def _choice(name: str, title: str, options: Mapping[str, str], kind: str, colours: Mapping[str, str]) -> str:
+def _choice(
+    name: str, title: str, options: Mapping[str, str], kind: str, looks: Mapping[str, tuple[str, str]]
+) -> str:
     made = []
     for i, (value, label) in enumerate(options.items()):
         checked = " checked" if kind == "checkbox" or i == 0 else ""
-        swatch = f'<i class="{colours[value]}"></i>' if value in colours else ""
+        colour, mark = looks.get(value, ("", ""))
+        swatch = f'<b class="{colour}" aria-hidden="true">{MARKS[mark]}</b>' if mark else ""
         made.append(
             f'<label><input type="{kind}" name="{text(name)}" value="{text(value)}"{checked} '
             f'autocomplete="off">{swatch}<span>{text(label)}</span></label>'

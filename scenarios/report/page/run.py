@@ -22,10 +22,10 @@ from footfall.scenarios.report.page.charts import (
     Axis,
     Chart,
     Hover,
+    Looks,
     Trace,
     frame,
-    slots_of,
-    symbols_of,
+    looks_of,
     thinned,
 )
 from footfall.scenarios.report.page.document import Page, Section, again, sentence, versions
@@ -83,20 +83,20 @@ def run_page(folder: Path, told: Mapping[str, Any]) -> Page:
     rows = told["walks"]
     methods = list(rows[0]["methods"])
     walks = [_read(folder, number, methods) for number in range(1, min(len(rows), MOST_WALKS) + 1)]
-    colours = slots_of(methods)
+    looks = looks_of(methods)
     count = "1 walk" if len(rows) == 1 else f"{len(rows)} walks"
     walked = f"{count} of {told['distance_m']:,.0f} m, IMU {rows[0]['imu']}, methods {', '.join(methods)}."
     lead = sentence(told.get("description")) + walked
     causes = _shown_causes(walks)
     sections = (
-        Section("summary", "Summary", _tiles(told["mean"], colours)),
-        Section("tracks", "Tracks", _figures(rows, methods, colours, causes)),
+        Section("summary", "Summary", _tiles(told["mean"], looks)),
+        Section("tracks", "Tracks", _figures(rows, looks, causes)),
         Section("scores", "Scores", _scores(told, rows, methods)),
         Section("parameters", "Parameters", _parameters(told, walks[0])),
         Section("origin", "Seeds and versions", _origin(told, rows, walks[0])),
         Section("again", "Make it again", again(told, "scores.json")),
     )
-    return Page("run", str(told["scenario"]), lead, sections, list(_charts(walks, methods, colours, causes)))
+    return Page("run", str(told["scenario"]), lead, sections, list(_charts(walks, looks, causes)))
 
 
 def _read(folder: Path, number: int, methods: Sequence[str]) -> _Walked:
@@ -129,8 +129,7 @@ def _read(folder: Path, number: int, methods: Sequence[str]) -> _Walked:
 
 def _figures(
     rows: Sequence[Mapping[str, Any]],
-    methods: Sequence[str],
-    colours: Mapping[str, str],
+    looks: Looks,
     causes: Mapping[str, str],
 ) -> str:
     shown = {str(i + 1): f"{i + 1}, unit {row['unit']}" for i, row in enumerate(rows[:MOST_WALKS])}
@@ -138,7 +137,7 @@ def _figures(
     return (
         html.controls(
             html.radios("walk", "Walk", shown),
-            html.boxes("method", "Methods", {name: name for name in methods}, colours),
+            html.boxes("method", "Methods", looks),
         )
         + (html.paragraph(few) if few else "")
         + '<div class="charts">'
@@ -173,18 +172,15 @@ def _figures(
     )
 
 
-def _charts(
-    walks: Sequence[_Walked], methods: Sequence[str], colours: Mapping[str, str], causes: Mapping[str, str]
-) -> Iterator[Chart]:
-    symbols = symbols_of(methods)
+def _charts(walks: Sequence[_Walked], looks: Looks, causes: Mapping[str, str]) -> Iterator[Chart]:
     for walk in walks:
         x, y = walk.poses.footfalls.position[:, :2].T
         start = Trace("start", x[:1], y[:1], INK, mode="markers", size=12, symbol="triangle-up")
         tracks = [Trace("truth", x, y, SOFT, width=6, opacity=0.45), start]
         errors, corrections = [], [_true_drift(walk)]
-        for name in methods:
-            row, colour, mine = walk.beside[name], colours[name], {"method": name}
-            (x, y), mark, hover = row.estimate.T, symbols[name], _hover(walk, name)
+        for name, (colour, mark) in looks.items():
+            row, mine, hover = walk.beside[name], {"method": name}, _hover(walk, name)
+            x, y = row.estimate.T
             end = Trace(name, x[-1:], y[-1:], colour, mode="markers", size=11, symbol=mark, when=mine)
             both = "lines+markers"
             tracks += [Trace(name, x, y, colour, mode=both, symbol=mark, when=mine, hover=hover), end]
@@ -279,7 +275,7 @@ def _budget(walk: _Walked, causes: Mapping[str, str]) -> list[Trace]:
     return made
 
 
-def _tiles(mean: Mapping[str, Mapping[str, float]], colours: Mapping[str, str]) -> str:
+def _tiles(mean: Mapping[str, Mapping[str, float]], looks: Looks) -> str:
     made = []
     for name, score in mean.items():
         more = f"mean heading error, {score['heading_error_final_deg']:.1f} deg at the end"
@@ -287,7 +283,7 @@ def _tiles(mean: Mapping[str, Mapping[str, float]], colours: Mapping[str, str]) 
         if name != "pdr" and "pdr" in mean and min(ours, theirs) > 0:
             times, word = (theirs / ours, "smaller") if ours <= theirs else (ours / theirs, "larger")
             more += f"; {times:.1f} times {word} than uncorrected"
-        made.append((name, colours[name], f"{score['heading_error_mean_deg']:.1f} deg", more))
+        made.append((name, looks[name][0], f"{score['heading_error_mean_deg']:.1f} deg", more))
     return html.tiles(made)
 
 

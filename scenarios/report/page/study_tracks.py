@@ -14,7 +14,7 @@ from footfall.conventions import wrap
 from footfall.errors import InputError
 from footfall.pdr.track import Track, read_track
 from footfall.scenarios.report.page import html
-from footfall.scenarios.report.page.charts import INK, SOFT, Axis, Chart, Hover, Trace
+from footfall.scenarios.report.page.charts import INK, SOFT, Axis, Chart, Hover, Looks, Trace
 from footfall.tables import read_table, require_columns
 
 
@@ -79,10 +79,10 @@ def track_figure(shown: Sequence[ShownTrack]) -> str:
     )
 
 
-def track_charts(shown: Sequence[ShownTrack], colours: Mapping[str, str]) -> Iterator[Chart]:
+def track_charts(shown: Sequence[ShownTrack], looks: Looks) -> Iterator[Chart]:
     for i, one in enumerate(shown):
         name, truth, track = one.entry["method"], one.truth, one.track
-        (x, y), colour = track.position[:, :2].T, colours.get(name, INK)
+        (x, y), (colour, mark) = track.position[:, :2].T, looks.get(name, (INK, "circle"))
         hover = (
             Hover("time", track.t, 1, "s"),
             Hover("heading", np.degrees(track.heading), 1, "deg"),
@@ -92,7 +92,7 @@ def track_charts(shown: Sequence[ShownTrack], colours: Mapping[str, str]) -> Ite
         traces = (
             Trace("truth", truth["x"], truth["y"], SOFT, width=6, opacity=0.45),
             Trace("start", *start, INK, mode="markers", size=12, symbol="triangle-up"),
-            Trace(name, x, y, colour, mode="lines+markers", hover=hover),
-            Trace(name, x[-1:], y[-1:], colour, mode="markers", size=11),
+            Trace(name, x, y, colour, mode="lines+markers", symbol=mark, hover=hover),
+            Trace(name, x[-1:], y[-1:], colour, mode="markers", size=11, symbol=mark),
         )
         yield Chart("track", Axis("x (m)"), Axis("y (m)"), traces, equal=True, when={"track": str(i)})

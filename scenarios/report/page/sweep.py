@@ -15,10 +15,10 @@ from footfall.scenarios.report.page.charts import (
     Axis,
     Chart,
     Hover,
+    Looks,
     Trace,
+    looks_of,
     scale,
-    slots_of,
-    symbols_of,
 )
 from footfall.scenarios.report.page.document import Page, Section, again, sentence, versions
 from footfall.scenarios.report.page.scores import (
@@ -65,14 +65,14 @@ def sweep_page(folder: Path, told: Mapping[str, Any]) -> Page:
     """
     cases = Cases.read(folder / "results.parquet")
     methods = [method["name"] for method in told["methods"]]
-    colours = slots_of(methods)
+    looks = looks_of(methods)
     panels = _panels(cases, told)
     shown = read_tracks(folder)
     failed = f", of which {cases.lost:,} failed" if cases.lost else ""
     lead = f"{sentence(told['description'])}{len(cases):,} rows{failed}."
     sections = (
         Section("summary", "Summary", _summary(cases, methods)),
-        Section("axes", "Axes", _figures(panels, methods, colours, len(cases))),
+        Section("axes", "Axes", _figures(panels, looks, len(cases))),
         Section("tracks", "Tracks", track_figure(shown)),
         Section("settings", "Settings", _settings(cases, told)),
         Section("failures", "Failures", _failures(cases)),
@@ -80,7 +80,7 @@ def sweep_page(folder: Path, told: Mapping[str, Any]) -> Page:
         Section("origin", "Versions", versions(told)),
         Section("again", "Make it again", again(told, "study.json")),
     )
-    charts = [*_charts(cases, panels, methods, colours), *track_charts(shown, colours)]
+    charts = [*_charts(cases, panels, looks), *track_charts(shown, looks)]
     return Page("sweep", told["name"], lead, sections, charts)
 
 
@@ -107,14 +107,14 @@ def _label(axis: Mapping[str, Any]) -> str:
     return f"{axis['label']} ({axis['unit']})" if axis["unit"] else str(axis["label"])
 
 
-def _figures(panels: Sequence[_Panel], methods: Sequence[str], colours: Mapping[str, str], rows: int) -> str:
+def _figures(panels: Sequence[_Panel], looks: Looks, rows: int) -> str:
     if not panels:
         return ""
     few = f" Of {rows:,} cases some {_MOST_POINTS:,} are drawn." if rows > _MOST_POINTS else ""
     return (
         html.controls(
             html.radios("score", "Score", {name: LABELS[name] for name in NAMES}),
-            html.boxes("method", "Methods", {name: name for name in methods}, colours),
+            html.boxes("method", "Methods", looks),
         )
         + html.paragraph(
             "Each panel is over one axis and takes all values of the others together. Small: a case each. "
@@ -127,19 +127,17 @@ def _figures(panels: Sequence[_Panel], methods: Sequence[str], colours: Mapping[
     )
 
 
-def _charts(
-    cases: Cases, panels: Sequence[_Panel], methods: Sequence[str], colours: Mapping[str, str]
-) -> Iterator[Chart]:
-    names, symbols = cases.texts("method"), symbols_of(methods)
+def _charts(cases: Cases, panels: Sequence[_Panel], looks: Looks) -> Iterator[Chart]:
+    names = cases.texts("method")
     scores = {name: cases.scores(name) for name in NAMES}
     step = max(1, -(-len(cases) // _MOST_POINTS))
     for panel in panels:
         made: dict[str, list[Trace]] = {name: [] for name in NAMES}
-        for i, method in enumerate(methods):
+        for i, (method, (colour, mark)) in enumerate(looks.items()):
             own = np.flatnonzero(names == method)
             look: dict[str, Any] = {
-                "colour": colours[method],
-                "symbol": symbols[method],
+                "colour": colour,
+                "symbol": mark,
                 "when": {"method": method},
             }
             has = np.array([value != "" for value in panel.values[own]], bool)
@@ -148,7 +146,7 @@ def _charts(
                     made[name] += _level(panel, method, middle(scores[name][own])["median"], look)
                 continue
             own = own[has]
-            x, centres, groups = _places(panel, panel.values[own], i, len(methods))
+            x, centres, groups = _places(panel, panel.values[own], i, len(looks))
             some = cases.where(own[::step])
             for name in NAMES:
                 y, unit = scores[name][own], unit_of(name)
@@ -175,7 +173,10 @@ def _charts(
 def _axis(panel: _Panel) -> Axis:
     if panel.levels is None:
         return scale(panel.label, np.array([value for value in panel.values if value != ""], float))
-    ticks = tuple((float(i), html.told(level)) for i, level in enumerate(panel.levels))
+    labels = [f"{level:.3g}" if isinstance(level, float) else html.told(level) for level in panel.levels]
+    if len(set(labels)) < len(labels):
+        labels = [html.told(level) for level in panel.levels]
+    ticks = tuple((float(i), label) for i, label in enumerate(labels))
     return Axis(panel.label, ticks=ticks, bounds=(-0.6, len(panel.levels) - 0.4))
 
 
