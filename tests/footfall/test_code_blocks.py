@@ -136,7 +136,7 @@ def test_a_toml_file_is_read(page, block, tmp_path):
 
 # Commands
 
-# What the parsers raise (typer's class depends on its version), what finds nothing, and what came to no good end.
+# What parsers raise (typer's class depends on its version), what finds nothing, and what ended badly.
 REFUSALS = (
     typer.BadParameter.__mro__[1],
     InputError,
