@@ -169,7 +169,7 @@ def parse_footfall(words):
     """By the command line's own parser, which refuses what it does not know; the command's parameters."""
     group, context = typer.main.get_command(app), None
     while hasattr(group, "resolve_command"):
-        context = group.make_context("footfall", list(words), parent=context, resilient_parsing=True)
+        context = group.make_context("footfall", list(words), parent=context)
         name, group, words = group.resolve_command(context, list(words))
     if words == ["--help"]:
         return {}
