@@ -72,9 +72,11 @@ def pages_with(language):
     return [page for page in PAGES if any(block.language == language for block in blocks(text_of(page)))]
 
 
+needs_docs = pytest.mark.skipif(not DOCS.is_dir(), reason="no docs beside these tests")
+
+
+@needs_docs
 def test_there_are_pages_and_no_languages_that_nothing_checks():
-    if not DOCS.is_dir():
-        pytest.skip("no docs beside these tests")
     assert {"README.md", "docs/methods.md"} <= set(PAGES)
     assert {block.language for page in PAGES for block in blocks(text_of(page))} <= LANGUAGES
 
@@ -114,6 +116,7 @@ def test_the_python_of_a_page_runs(page, folder):
             names[name].close()
 
 
+@needs_docs
 def test_what_is_shown_in_part_is_still_shown():
     """And the tests that hold those parts are there."""
     firsts = {block.code.splitlines()[0] for page in PAGES for block in blocks(text_of(page))}
@@ -233,6 +236,7 @@ def test_the_commands_of_a_page_are_such_as_there_are(page, folder, monkeypatch,
                 perform(words, monkeypatch)
 
 
+@needs_docs
 @pytest.mark.parametrize(
     "line",
     [
