@@ -12,6 +12,7 @@ import pytest
 from footfall.errors import InputError
 from footfall.pdr.track import read_track
 from footfall.scenarios.report.page import write_page
+from footfall.scenarios.report.page.charts import Trace, frame
 from footfall.tables import read_table, write_table
 from tests.helpers.commands import expect_one_sentence
 from tests.helpers.pages import METHODS, NASTY, Page, budget_of, run_folder
@@ -118,6 +119,18 @@ def test_the_correction_is_what_a_method_takes_for_drift(folder, page):
     assert drift[15] == pytest.approx(np.degrees(1e-5 * 16 - 3e-5), rel=1e-3)  # a mean of its neighbours
 
 
+def test_a_jump_leaves_the_frame_and_flattens_nothing(page):
+    flat, jump = np.linspace(0.0, 1.0, 199), np.array([-40.0])
+    low, high = frame([Trace("a", flat, flat, "s0"), Trace("b", jump, jump, "s1")])
+    assert -0.4 < low < 0
+    assert 1 < high < 1.4
+    assert frame([Trace("a", flat[:1], flat[:1], "s0")]) == (-1, 1)  # of a level line, a frame all the same
+    for chart in page.charts("drift"):
+        low, high = chart["y"]["bounds"]
+        assert all(low < page.arrays[trace["y"]].min() for trace in chart["traces"])
+        assert all(high > page.arrays[trace["y"]].max() for trace in chart["traces"])
+
+
 def test_the_budget_sums_drift_up_over_the_strides(page):
     walk = synthetic_walk(strides=40)
     budget = budget_of(walk)
@@ -142,8 +155,8 @@ def test_tables_hold_every_score_without_a_script(folder, page):
         "walk",
         "unit",
         "method",
-        "heading error, mean (deg)",
-        "heading error, final (deg)",
+        "mean heading error (deg)",
+        "final heading error (deg)",
     ]
     assert len(rows) == 1 + 2 * 3 + 3
     for cells, (row, method) in zip(rows[1:7], itertools.product(scores["walks"], METHODS), strict=True):
@@ -156,6 +169,19 @@ def test_tables_hold_every_score_without_a_script(folder, page):
         assert cells[6] == f"{told['distance_error_pct']:+.2f}"
     assert [row[0] for row in rows[7:]] == ["mean"] * 3
     assert rows[8][3] == f"{scores['mean']['hdr']['heading_error_mean_deg']:.1f}"
+
+
+def test_tiles_tell_the_mean_error_and_what_a_method_makes_of_it(tmp_path, page):
+    """hdr's error is twice pdr's, that of the third method three times."""
+    tiles = re.findall(r"<strong>(.*?)</strong><span>(.*?)</span>", page.text)
+    assert [more.rpartition("; ")[2] for _, more in tiles[1:]] == [
+        "2.0 times larger than uncorrected",
+        "3.0 times larger than uncorrected",
+    ]
+    assert tiles[0][0] == "0.3 deg"
+    assert "uncorrected" not in tiles[0][1]
+    better = Page(write_page(run_folder(tmp_path / "run", ("hdr", "pdr"), 1)))
+    assert "; 2.0 times smaller than uncorrected" in better.text
 
 
 def test_other_units_and_noises_are_told_where_a_run_has_them(tmp_path):
