@@ -20,6 +20,8 @@ from footfall.scenarios.trial import Row, Setup, Trial
 
 AnyMethod = str | Method | Callable[..., Track]
 
+NOISE_STEP = 100_000  # between the seeds of one unit's noises: more than there are units
+
 
 @dataclass(frozen=True)
 class Rows(Sequence[Row]):
@@ -77,23 +79,33 @@ class Rows(Sequence[Row]):
 
 
 def cases(
-    setup: Setup, *, units: int, walks: int | None = None, seed: int | None = None, crossed: bool = False
+    setup: Setup,
+    *,
+    units: int,
+    walks: int | None = None,
+    seed: int | None = None,
+    crossed: bool = False,
+    first_unit: int = OTHER_UNITS_FROM,
+    noises: int = 1,
 ) -> list[Trial]:
-    """Units (seeds from 1000) dealt to the walks of a scenario, each with the noise of its own seed.
+    """Units dealt to the walks of a scenario, each with the noise of its own seed.
 
     Parameters
     ----------
     walks, seed : how many, and of the first; the scenario's when None
     crossed : whether every unit is worn on every walk
+    first_unit : seed of the first unit, the next has the next
+    noises : how many a unit is heard through: of its own seed, and of seeds `NOISE_STEP` apart
     """
     scenario = setup.scenario
     count = scenario.seeds.walks if walks is None else walks
     base = scenario.seeds.base if seed is None else seed
-    worn = range(OTHER_UNITS_FROM, OTHER_UNITS_FROM + units)
+    worn = range(first_unit, first_unit + units)
     pairs = product(range(count), worn) if crossed else ((unit % count, unit) for unit in worn)
     return [
-        Trial(setup, number, walk_seed=base + number, unit_seed=unit, noise_seed=unit)
+        Trial(setup, number, walk_seed=base + number, unit_seed=unit, noise_seed=unit + NOISE_STEP * noise)
         for number, unit in sorted(pairs)
+        for noise in range(noises)
     ]
 
 

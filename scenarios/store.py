@@ -61,3 +61,10 @@ def write_footfalls(file: Path, found: Reckoned) -> None:
         file.parent.mkdir(parents=True, exist_ok=True)
         with replacing(file) as temporary, temporary.open("wb") as out:
             np.savez(out, recording_sha=np.array(found.recording_sha), **columns)
+
+
+def footfalls_folder() -> Path:
+    """Where studies keep footfalls: beside the walks, in the user's cache."""
+    from footfall.simulate.cache import cache_folder
+
+    return cache_folder() / "footfalls"

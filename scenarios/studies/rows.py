@@ -127,8 +127,10 @@ def write_rows(rows: Any, path: str | os.PathLike[str]) -> None:
     InputError
         As of `replacing`.
     """
-    with replacing(path) as temporary:
-        pq.write_table(rows, temporary, compression="zstd", compression_level=3)
+    with replacing(path) as temporary, temporary.open("r+b") as file:
+        pq.write_table(rows, file, compression="zstd", compression_level=3)
+        file.flush()
+        os.fsync(file.fileno())  # or else a power cut may leave a name without content
 
 
 def read_rows(path: str | os.PathLike[str]) -> Any:
