@@ -24,6 +24,7 @@ from footfall.cli.record import record
 from footfall.cli.render import render
 from footfall.cli.run import run
 from footfall.cli.score import score
+from footfall.cli.sweep import sweep
 from footfall.cli.terminal import perform
 from footfall.cli.track import track
 from footfall.cli.walk import walk
@@ -54,7 +55,7 @@ def _main(
         print(context.get_help())
 
 
-for command in (list_, parameters, run, walk, render, record, track, score, check, export, allan):
+for command in (list_, parameters, run, walk, render, record, track, score, check, sweep, export, allan):
     app.command(command.__name__.rstrip("_"))(command)
 app.add_typer(cache, name="cache")
 
