@@ -1,9 +1,9 @@
 """kill -9 of a sweep at random moments, then of its workers: is the dataset the same, and what is done twice?
 
-A small study on one short walk is done once without disturbance. Then it is started again and again, and its
-driver killed each time, as often as asked; and once more with one of its workers killed now and then. Compared
-are the bytes of results.parquet. A method of the study writes down each recording that it is given, which tells
-what was done twice.
+A small study on one short walk is done once without disturbance. Then it is started again and again, and
+its driver killed each time, as often as asked; and once more with one of its workers killed now and then.
+Compared are the bytes of results.parquet. A method of the study writes down each recording that it is given,
+which tells what was done twice.
 
 python -m benchmarks.validation.sweep_resumption --kills 20
 """
