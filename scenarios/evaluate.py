@@ -109,6 +109,15 @@ def cases(
     ]
 
 
+def travelling(methods: Sequence[Method], workers: int | None = None) -> int | None:
+    """`workers`; or 1 where a method (a lambda, a function of a notebook) cannot travel to others."""
+    try:
+        dumps(methods)
+    except (PicklingError, AttributeError, TypeError):
+        return 1
+    return workers
+
+
 def evaluate(
     method: AnyMethod | Iterable[AnyMethod],
     scenario: str,
@@ -130,8 +139,8 @@ def evaluate(
     units : individual IMUs, dealt to the walks
     walks, seed, imu : the scenario's own when None
     values : address -> value (`footfall parameters`), as `--set` takes them
-    workers : processes, one a core when None; what cannot travel to another process (a lambda, a function
-        of a notebook) is called in this one
+    workers : processes, one a core when None; what cannot travel to another (`travelling`) is called in this
+        one
     on_progress : as of `execute`; bars on a terminal when None
 
     Returns
@@ -148,10 +157,8 @@ def evaluate(
     methods: Iterable[AnyMethod] = [method] if single else method  # type: ignore[list-item, assignment]
     made = with_values(documents(scenario, imu=imu, methods=methods), values or {}).setup()
     trials = cases(made, units=units, walks=walks, seed=seed)
-    try:
-        dumps(made.methods)
-    except (PicklingError, AttributeError, TypeError):
-        workers = 1
     with showing() as progress:
-        found = execute(trials, workers=workers, on_progress=on_progress or progress)
+        found = execute(
+            trials, workers=travelling(made.methods, workers), on_progress=on_progress or progress
+        )
         return Rows(tuple(row for outcome in found for row in outcome.rows))

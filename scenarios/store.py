@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from contextlib import suppress
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,6 +13,7 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.identity import digest_of
 from footfall.pdr.footfalls import Footfalls
+from footfall.pdr.strides import Strides
 from footfall.sources import stage_digest
 from footfall.tables import replacing
 
@@ -19,7 +21,8 @@ if TYPE_CHECKING:
     from footfall.scenarios.trial import Trial
     from footfall.simulate.cache import CachedWalk
 
-_FIELDS = ("t", "interval", "distance", "rate", "heading")
+_FIELDS = ("t", "interval", "distance", "rate", "position", "heading")
+_STRIDES = tuple(item.name for item in fields(Strides))
 
 
 class Reckoned(NamedTuple):
@@ -51,7 +54,8 @@ def read_footfalls(file: Path) -> Reckoned | None:
     try:
         with np.load(file, allow_pickle=False) as kept:
             columns = {name: kept[name] for name in _FIELDS}
-            found = Reckoned(Footfalls(position=kept["position"], **columns), str(kept["recording_sha"]))
+            strides = Strides(**{name: kept[f"stride_{name}"] for name in _STRIDES})
+            found = Reckoned(Footfalls(**columns, strides=strides), str(kept["recording_sha"]))
         with suppress(OSError):  # when it was last used
             os.utime(file)
         return found
@@ -61,7 +65,8 @@ def read_footfalls(file: Path) -> Reckoned | None:
 
 def write_footfalls(file: Path, found: Reckoned) -> None:
     """Keep footfalls. A full disk costs only that they are reckoned again."""
-    columns = {name: getattr(found.footfalls, name) for name in (*_FIELDS, "position")}
+    columns = {name: getattr(found.footfalls, name) for name in _FIELDS}
+    columns |= {f"stride_{name}": getattr(found.footfalls.strides, name) for name in _STRIDES}
     with suppress(OSError, InputError):
         file.parent.mkdir(parents=True, exist_ok=True)
         with replacing(file) as temporary, temporary.open("wb") as out:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import math
 import os
+import shlex
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,9 @@ def blaming(file: Path | str, part: str = "recording") -> Iterator[None]:
         raise error.about(file, part) from None
 
 
+TABLES = (".parquet", ".csv")  # what tables are written as
+
+
 def require_output(file: Path, ending: str | tuple[str, ...], *inputs: Path) -> None:
     """Refuse a file that cannot or must not be written before any work is done.
 
@@ -72,6 +76,20 @@ def require_output(file: Path, ending: str | tuple[str, ...], *inputs: Path) -> 
             raise InputError("would overwrite what it is made from", file)
 
 
+def command_line(context: typer.Context, *but: str) -> str:
+    """The command as it was given, to be given again, without the options of the parameters `but`."""
+    words = context.command_path.split()
+    for parameter in context.command.params:
+        source = context.get_parameter_source(str(parameter.name))
+        if parameter.name in but or source is None or source.name != "COMMANDLINE":
+            continue
+        value = context.params[parameter.name]
+        values = value if isinstance(value, (list, tuple)) else [value]
+        option = [] if parameter.param_type_name == "argument" else [parameter.opts[0]]
+        words += option if value is True else [word for item in values for word in (*option, str(item))]
+    return shlex.join(words)
+
+
 def perform(app: typer.Typer, arguments: list[str] | None) -> int:
     """Run a command line, tell each mistake in one sentence, and return the exit code."""
     try:
@@ -84,10 +102,23 @@ def perform(app: typer.Typer, arguments: list[str] | None) -> int:
         code = INTERRUPTED
     except _USAGE_ERROR as error:
         command = getattr(getattr(error, "ctx", None), "command_path", "footfall")
-        return _refuse(f"{error.format_message().rstrip('.')} (see `{command} --help`)")  # type: ignore[attr-defined]
+        given = _given(error, sys.argv[1:] if arguments is None else arguments)
+        told = error.format_message().rstrip(".")  # type: ignore[attr-defined]
+        return _refuse(f"{told}{given} (see `{command} --help`)")
     if code == INTERRUPTED:
         print("footfall: interrupted", file=sys.stderr)
     return code
+
+
+def _given(error: BaseException, arguments: Sequence[str]) -> str:
+    """The value of the option that an error is about, which the message of typer leaves out."""
+    for option in getattr(getattr(error, "param", None), "opts", ()):
+        for at, argument in enumerate(arguments):
+            if argument.startswith(f"{option}="):
+                return f", got {argument.partition('=')[2]!r}"
+            if argument == option and at + 1 < len(arguments):
+                return f", got {arguments[at + 1]!r}"
+    return ""
 
 
 def _refuse(sentence: str) -> int:

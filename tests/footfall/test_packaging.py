@@ -59,6 +59,8 @@ def test_data_files_come_with_the_package():
     assert {"straight", "curving", "turning", "closed-loop", "closed-loop-gentle"}.issubset(stock_scenarios())
     assert stock_policy().weights
     assert files("footfall").joinpath("py.typed").is_file()
+    page = files("footfall.scenarios.report.page")
+    assert all(page.joinpath(name).is_file() for name in ("page.html", "page.css", "page.js", "tables.js"))
 
 
 def test_one_version():
