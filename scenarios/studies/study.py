@@ -21,7 +21,7 @@ from footfall.scenarios.scenario import stock_scenarios
 from footfall.scenarios.studies.design import DesignTable
 from footfall.scenarios.studies.methods import MethodEntry, beside, method_of
 from footfall.scenarios.trial import find
-from footfall.toml import Strict, checked, parse_toml
+from footfall.toml import Strict, checked, no_such_file, parse_toml
 
 STOCK = Path(__file__).parent / "stock"
 FIRST = ("imu", "pdr.detector")  # what other addresses are inside of is set before them
@@ -81,8 +81,7 @@ class Study:
         if (name := os.fspath(name_or_path)) in stock_studies():
             file = STOCK / f"{name}.toml"
         elif not (file := Path(name)).is_file():
-            stock = ", ".join(stock_studies())
-            raise InputError(f"study {name!r}: neither a stock study ({stock}) nor a TOML file that exists")
+            raise no_such_file("study", name, stock_studies())
         return cls(file.stem, parse_toml(file), file.parent, str(file))
 
     def set(self, values: Mapping[str, Any]) -> Study:
