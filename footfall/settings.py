@@ -10,6 +10,7 @@ import difflib
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
+from functools import lru_cache
 from types import NoneType, UnionType
 from typing import Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
 
@@ -188,11 +189,14 @@ def _limits(item: Any) -> _Limits:
     return found
 
 
+_hints: Callable[[Any], Mapping[str, Any]] = lru_cache(get_type_hints)  # slow; studies ask at every point
+
+
 def _places(params: Any, path: tuple[str, ...] = ()) -> Iterator[_Place]:
     if not is_dataclass(params):
         return
     try:
-        hints = get_type_hints(type(params))
+        hints = _hints(type(params))
     except (NameError, TypeError) as error:
         raise InputError(f"the types of its fields cannot be read ({error})", type(params).__name__) from None
     for item in fields(params):

@@ -9,7 +9,10 @@ import re
 import tomllib
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any, NamedTuple
+
+from pydantic import BaseModel
 
 from footfall.addresses import edited, keys, parse, pattern, there
 from footfall.errors import InputError
@@ -108,7 +111,8 @@ class Documents:
         made = setup(scenario, imu=self.sheet, methods=self.methods, without=self.without)
         pdr = reckoning_params(made.pdr, self.detector, self.pdr)
         guided = _about("filter", made.guided, self.guided)
-        overridden(draw_unit(made.spec, 0), self.unit)  # refused here, not in every trial
+        if self.unit:  # refused here, not in every trial
+            overridden(draw_unit(made.spec, 0), self.unit)
         return replace(made, pdr=pdr, guided=guided, unit=dict(self.unit))
 
 
@@ -203,7 +207,7 @@ def _told(method: Method, area: str, path: str, value: Any) -> Method:
 
 
 def _scenario(base: Documents, address: str, path: str, value: Any) -> Documents:
-    _require_known(address, [f"scenario.{key.address}" for key in keys(ScenarioFile)])
+    _require_known(address, _addresses("scenario", ScenarioFile))
     if address == "scenario.sensor.imu":
         raise InputError("set imu, or use the option --imu", address)
     table = _opened_subjects(base.scenario.table, path)
@@ -235,7 +239,7 @@ def _imu(base: Documents, address: str, path: str, value: Any) -> Documents:
 def _sheet_with(sheet: SheetDocument, address: str, path: str, value: Any) -> SheetDocument:
     if not path:
         return read_sheet(str(value))
-    known = [f"imu.{key.address}" for key in keys(ImuSheet)]
+    known = _addresses("imu", ImuSheet)
     if address not in known:
         one = f"unit.{path}" if path in CONSTANTS else None
         spread = next((name for name in known if name.replace("_sigma", "") == address), None)
@@ -312,6 +316,12 @@ def _about(area: str, base: Any, values: Mapping[str, Any]) -> Any:
         return changed(base, values)
     except InputError as error:
         raise InputError(f"{area}.{error}") from None
+
+
+@lru_cache
+def _addresses(area: str, model: type[BaseModel]) -> tuple[str, ...]:
+    """Those of a document; studies ask for them at every point."""
+    return tuple(f"{area}.{key.address}" for key in keys(model))
 
 
 def _require_known(address: str, known: Iterable[str]) -> None:

@@ -26,7 +26,7 @@ def document(plan: Plan, command: str = "") -> dict[str, Any]:
         "command": command or f"footfall sweep {study.source or study.name}",
         "versions": versions(),
         "digests": {stage: stage_digest(stage) for stage in STAGES},
-        "scenarios": list(study.documents()),
+        "scenarios": list(plan.scenarios),
         "methods": [
             {"name": method.name, "description": method.description, "parameters": plain(method.params)}
             for method in study.methods

@@ -58,6 +58,7 @@ class Plan:
 
     Attributes
     ----------
+    scenarios : by name
     tasks : none of their cells twice, those on a walk after each other
     entries : of the dataset
     axes : address -> what it is
@@ -66,6 +67,7 @@ class Plan:
     """
 
     study: Study
+    scenarios: tuple[str, ...]
     tasks: tuple[Task, ...]
     entries: tuple[Entry, ...]
     axes: Mapping[str, Axis]
@@ -104,7 +106,7 @@ def plan_of(study: Study) -> Plan:
     """
     made: dict[str, Task] = {}
     entries: list[Entry] = []
-    walks: dict[str, Walked] = {}
+    walks = _Walks()
     known: dict[str, Parameter] = {}
     scenarios = study.documents()
     with study.blamed():
@@ -117,11 +119,33 @@ def plan_of(study: Study) -> Plan:
         for name, base in scenarios.items():
             for recorded in _recorded(study, name, base, given, told).values():
                 _add(recorded, study, made, entries, walks)
-    order = {key: at for at, key in enumerate(walks)}
+    order = {key: at for at, key in enumerate(walks.found)}
     tasks = sorted(made.values(), key=lambda task: order[task.walk])
     axes = _axes(given, known, labels(design))
     kinds = {address: kind_of(axis.values) for address, axis in axes.items() if address not in CASE}
-    return Plan(study, tuple(tasks), tuple(entries), axes, kinds, walks)
+    return Plan(study, tuple(scenarios), tuple(tasks), tuple(entries), axes, kinds, walks.found)
+
+
+class _Walks:
+    """The walks of a study by key, each hashed once: plans are big."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, Walked] = {}
+        self._keys: dict[tuple[int, int, int], str] = {}
+        self._held: list[Scenario] = []  # so that no other gets its id
+
+    def key(self, trial: Trial) -> str:
+        """Of a trial's walk."""
+        scenario = trial.setup.scenario
+        short = (id(scenario), trial.number, trial.walk_seed)
+        if short not in self._keys:
+            self._held.append(scenario)
+            plan = trial.plan
+            key = self._keys[short] = plan_key(plan, stock_policy())
+            pauses = sum(stop.for_s for stop in plan.stops) + plan.calibration_s
+            seconds = pauses + plan.route.length / plan.gait.pace_m_s
+            self.found.setdefault(key, Walked(float(plan.route.length), float(seconds), plan.rate_hz))
+        return self._keys[short]
 
 
 class _Told:
@@ -180,21 +204,16 @@ def _version(method: Method) -> str:
 
 
 def _add(
-    recorded: _Recorded, study: Study, made: dict[str, Task], entries: list[Entry], walks: dict[str, Walked]
+    recorded: _Recorded, study: Study, made: dict[str, Task], entries: list[Entry], walks: _Walks
 ) -> None:
     """The tasks of what is recorded alike, beside those that are there, and what they are for."""
     table, setup = study.file.cases, recorded.setup
     every = cases(setup, **table.model_dump())
-    policy, content = stock_policy(), _content(setup)
+    content = _content(setup)
     for walk in _by_walk(every):
         first = walk[0]
-        plan, scenario = first.plan, setup.scenario
-        walked = plan_key(plan, policy)
-        if walked not in walks:
-            pauses = sum(stop.for_s for stop in plan.stops) + plan.calibration_s
-            seconds = pauses + plan.route.length / plan.gait.pace_m_s
-            walks[walked] = Walked(float(plan.route.length), float(seconds), plan.rate_hz)
-        weather = digest_of(scenario.temperature_of(first.number), plan.subject.name, plan.name)
+        scenario, walked = setup.scenario, walks.key(first)
+        weather = digest_of(scenario.temperature_of(first.number), _subject(first), scenario.name)
         for at in range(0, len(walk), CHUNK):
             seeds = tuple((trial.unit_seed, trial.noise_seed) for trial in walk[at : at + CHUNK])
             key = _hash(content, walked, weather, first.number, first.walk_seed, seeds)
@@ -216,6 +235,11 @@ def _add(
             entries += [
                 Entry(cells[reckoned, version], values) for reckoned, version, values in recorded.meant
             ]
+
+
+def _subject(trial: Trial) -> str:
+    subjects = trial.setup.scenario.subjects
+    return subjects[trial.number % len(subjects)].name
 
 
 def _by_walk(trials: Sequence[Trial]) -> Iterator[list[Trial]]:
