@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -121,6 +121,12 @@ def needed(gate: Gate, alpha: float = ALPHA) -> int:
 def stock_gates() -> tuple[str, ...]:
     """Names of the files of gates that come with Footfall."""
     return tuple(sorted(file.name.removesuffix(ENDING) for file in STOCK.glob(f"*{ENDING}")))
+
+
+def described(names: Iterable[str]) -> dict[str, str]:
+    """Gates that come with Footfall -> what they are about."""
+    files = ((name, STOCK / f"{name}{ENDING}") for name in names)
+    return {name: checked(parse_toml(file), GatesFile, str(file)).description for name, file in files}
 
 
 def read_gates(

@@ -6,6 +6,7 @@ from xml.etree import ElementTree as xml
 import pyarrow.parquet as pq
 import pytest
 
+from footfall.scenarios.studies.gate_file import stock_gates
 from tests.helpers.commands import expect_one_sentence, one_document
 from tests.helpers.feet import round_a_block, walk_instead
 
@@ -202,3 +203,10 @@ def test_mistakes_are_one_sentence(gates, cli, tmp_path, line, culprit):
 def test_quick_is_of_fewer_cases(gates, cli):
     _, out, _ = cli("gate gates.toml --quick --json")
     assert one_document(out)["cases"]["units"] == 8
+
+
+def test_gates_that_come_with_footfall_are_listed(cli):
+    code, out, _ = cli("gate list")
+    assert code == 0
+    assert any(line.split()[:1] == ["closed-loop"] and "HDR" in line for line in out.splitlines())
+    assert set(one_document(cli("gate list --json")[1])) == set(stock_gates())

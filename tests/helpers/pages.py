@@ -3,13 +3,17 @@
 import base64
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 
 from footfall.pdr.track import Track, write_track
-from footfall.scenarios.judge.score import mean_score, score
+from footfall.scenarios.judge.score import Score, mean_score, score
+from footfall.scenarios.studies.rows import table, write_rows
+from footfall.scenarios.trial import Row
 from footfall.simulate.budget import DriftBudget, write_budget
 from footfall.simulate.walk import write_walk
+from footfall.tables import write_table
 from tests.helpers.synthetic import synthetic_walk
 
 NASTY = "<img src=x onerror=window.hacked=1>&amp;"  # also a method's name, which is part of a file's
@@ -108,3 +112,109 @@ class Page:
         ]
         rows = re.findall(r"<tr>(.*?)</tr>", found, re.DOTALL)
         return [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row, re.DOTALL) for row in rows]
+
+
+def sweep_folder(
+    folder, methods=("pdr", "hdr"), radii=(5, 10, 20), units=10, fail=True, kind="integer", **more
+):
+    """What `footfall sweep` leaves: an arc's radius, a parameter of hdr alone, two sheets, some failures.
+
+    The mean heading error of hdr is radius x theta x (1 + unit / 10), pdr's ten times the radius; the sheet
+    doubles it.
+    """
+    folder.mkdir(exist_ok=True)
+    rows, points = [], []
+    for radius in radii:
+        for imu, times in (("nimu", 1.0), ("phone", 2.0)):
+            for method in methods:
+                for theta in (None,) if method == "pdr" else (0.1, 0.25):
+                    for unit in range(units):
+                        error = times * radius * (10.0 if theta is None else theta * (1 + unit / 10))
+                        case = Row("one-arc", 0, 1, "reference", imu, 1000 + unit, 1000 + unit, method)
+                        failed = fail and method == "hdr" and unit == 0 and theta == 0.1
+                        result = {"score": Score(error, 2 * error, 3, -error, 5, 6), "footfalls": 40}
+                        lost = {"stage": "track", "error": "the filter <b>diverged</b>"}
+                        rows.append(replace(case, **(lost if failed else result)))
+                        points.append({"radius_m": radius, "hdr.theta_w_deg_s": theta})
+    made = table(rows, points, {"radius_m": kind, "hdr.theta_w_deg_s": "number"}, "key")
+    write_rows(made, folder / "results.parquet")
+    axes = {
+        "radius_m": {"values": list(radii), "unit": "m", "label": "radius"},
+        "imu": {"values": ["phone", "nimu"], "unit": "", "label": "IMU"},
+        "hdr.theta_w_deg_s": {"values": [0.1, 0.25], "unit": "deg/s", "label": "theta w"},
+    }
+    document = {
+        "name": "arcs",
+        "description": "one arc",
+        "command": "footfall sweep arcs.toml",
+        "versions": {"numpy": "2.4.6"},
+        "scenarios": ["one-arc"],
+        "methods": [
+            {"name": name, "description": f"what {name} does", "parameters": {"tau_s": 8.0}}
+            for name in methods
+        ],
+        "axes": axes,
+        "cases": {"units": units, "walks": None},
+        "design": {"kind": "grid"},
+        "set": {"scenario.gait.pace_m_s": 1.3},
+    }
+    (folder / "study.json").write_text(json.dumps(document | more), encoding="utf-8")
+    tracks = folder / "tracks"
+    tracks.mkdir(exist_ok=True)
+    walk = synthetic_walk(strides=20)
+    falls = walk.footfalls
+    columns = {"t": falls.t, "heading": falls.heading, **dict(zip("xyz", falls.position.T, strict=True))}
+    write_table(tracks / "walk-1.footfalls.parquet", columns, {}, {})
+    index = []
+    for i, which in enumerate(("best", "worst")):
+        write_track(track_of(walk, "hdr", 1 + i), tracks / f"hdr-{which}.parquet")
+        entry = {"file": f"hdr-{which}.parquet", "truth": "walk-1.footfalls.parquet", "method": "hdr"}
+        entry |= {"scenario": "one-arc", "walk_seed": 1, "unit_seed": 1001 + i, "imu": "nimu", "which": which}
+        index.append(
+            entry | {"axes": {"radius_m": 5, "hdr.theta_w_deg_s": 0.25}, "heading_error_mean_deg": i}
+        )
+    (tracks / "index.json").write_text(json.dumps(index), encoding="utf-8")
+    return folder
+
+
+def gate_folder(folder, units=20, fail=0, **more):
+    """What `footfall gate` leaves. Unit k errs by k deg with hdr, by 4 k with pdr; the last ones failed."""
+    folder.mkdir(exist_ok=True)
+    rows = []
+    for unit in range(1, units + 1):
+        for method, error in (("hdr", unit), ("pdr", 4 * unit)):
+            case = Row("closed-loop", 0, 1, "reference", "nimu", 1000 + unit, 1000 + unit, method)
+            failed = method == "hdr" and unit > units - fail
+            result = {"score": Score(error, error, 1, -1, 1, 1)}
+            rows.append(replace(case, **({"stage": "track", "error": "lost"} if failed else result)))
+    write_rows(table(rows), folder / "cases.parquet")
+    metric, gates = "heading_error_mean_deg", []
+    for name, against, unit, statistic, estimate, low, high, limit, verdict, reason in (
+        ("half below 15", None, "deg", "median", 10.5, 6.0, None, 15.0, "undecided", "20 cases cannot tell"),
+        ("a third of pdr", "pdr", "%", "median", -75.0, -80.0, -70.0, -66.0, "pass", ""),
+        ("most below 18", None, "%", "share_below", 85.0, 65.0, 95.0, 90.0, "fail", ""),
+        ("as released", "old.parquet", "%", "median", 1.0, 0.5, 2.0, 10.0, "pass", ""),
+        ("nothing moved", "pdr", "cases", "same", 3.0, None, None, 0.1, "fail", "3 of 20 cases moved"),
+    ):
+        gate = {"name": name, "method": "hdr", "against": against, "metric": metric, "unit": unit}
+        gate |= {"statistic": statistic, "estimate": estimate, "low": low, "high": high, "limit": limit}
+        gate |= {"verdict": verdict, "reason": reason, "needed": None, "scatter": None}
+        gates.append(gate | {"cases": units, "left_out": 0})
+    document = {
+        "name": "gates",
+        "description": "nothing gets worse",
+        "command": "footfall gate gates.toml",
+        "versions": {"numpy": "2.4.6"},
+        "cases": {
+            "scenario": "closed-loop",
+            "walks": 5,
+            "units": units,
+            "imu": "nimu",
+            "seeds": {"walks": 1, "units": 1000},
+        },
+        "confidence": 0.95,
+        "gates": gates,
+        "exit_code": 1,
+    }
+    (folder / "gate.json").write_text(json.dumps(document | more), encoding="utf-8")
+    return folder

@@ -142,8 +142,8 @@ def test_tables_hold_every_score_without_a_script(folder, page):
         "walk",
         "unit",
         "method",
-        "heading error, mean (deg)",
-        "heading error, final (deg)",
+        "mean heading error (deg)",
+        "final heading error (deg)",
     ]
     assert len(rows) == 1 + 2 * 3 + 3
     for cells, (row, method) in zip(rows[1:7], itertools.product(scores["walks"], METHODS), strict=True):
@@ -156,6 +156,19 @@ def test_tables_hold_every_score_without_a_script(folder, page):
         assert cells[6] == f"{told['distance_error_pct']:+.2f}"
     assert [row[0] for row in rows[7:]] == ["mean"] * 3
     assert rows[8][3] == f"{scores['mean']['hdr']['heading_error_mean_deg']:.1f}"
+
+
+def test_tiles_tell_the_mean_error_and_what_a_method_makes_of_it(tmp_path, page):
+    """hdr's error is twice pdr's, that of the third method three times."""
+    tiles = re.findall(r"<strong>(.*?)</strong><span>(.*?)</span>", page.text)
+    assert [more.rpartition("; ")[2] for _, more in tiles[1:]] == [
+        "2.0 times larger than uncorrected",
+        "3.0 times larger than uncorrected",
+    ]
+    assert tiles[0][0] == "0.3 deg"
+    assert "uncorrected" not in tiles[0][1]
+    better = Page(write_page(run_folder(tmp_path / "run", ("hdr", "pdr"), 1)))
+    assert "; 2.0 times smaller than uncorrected" in better.text
 
 
 def test_other_units_and_noises_are_told_where_a_run_has_them(tmp_path):

@@ -3,7 +3,7 @@
 import pytest
 
 from footfall.scenarios.report.page import write_page
-from tests.helpers.pages import METHODS, NASTY, run_folder
+from tests.helpers.pages import METHODS, NASTY, gate_folder, run_folder, sweep_folder
 
 pytest.importorskip("selenium", reason="pages are looked at by footfall[test]'s selenium")
 
@@ -217,3 +217,39 @@ def test_what_can_be_used_can_be_reached_by_keys_and_has_a_name(desk):
     )
     ids = desk.js("[...document.querySelectorAll('main [id]')].map((e) => e.id)")
     assert len(ids) == len(set(ids))
+
+
+@pytest.mark.parametrize("made", [sweep_folder, gate_folder])
+def test_sweeps_and_gates_open_on_a_phone_as_at_a_desk(browser, tmp_path, made):
+    page = write_page(made(tmp_path / "results"))
+    for width, dark in ((1280, False), (390, True)):
+        browser.open(page, width, dark)
+        assert browser.js("[...document.querySelectorAll('.chart')].every((c) => c.data.length > 0)")
+        assert browser.complaints() == []
+        assert {address.partition(":")[0] for address in browser.requests()} <= {"file", "data", "blob"}
+        assert sideways(browser) <= 0
+
+
+def test_another_score_of_a_sweep_is_drawn_in_all_panels(browser, tmp_path):
+    browser.open(write_page(sweep_folder(tmp_path / "results")))
+    titles = "[0, 1, 2].map((i) => document.getElementById(`axis-${i}`).layout.yaxis.title.text)"
+    assert browser.js(titles) == ["mean heading error (deg)"] * 3
+    browser.js("document.querySelector('input[value=return_error_pct]').click()")
+    assert browser.js(titles) == ["return error (%)"] * 3
+    before = browser.js("document.getElementById('track').data.at(-1).y")
+    browser.js("document.querySelectorAll('input[name=track]')[1].click()")
+    assert browser.js("document.getElementById('track').data.at(-1).y") != before
+
+
+def test_long_tables_are_shown_in_pages(browser, tmp_path):
+    browser.open(write_page(sweep_folder(tmp_path / "results", radii=tuple(range(1, 101)))))
+    rows = "[...document.querySelectorAll('#settings tbody tr')].filter((row) => !row.hidden).length"
+    assert browser.js(rows) == 500
+    on = "document.querySelectorAll('.pager button')[1]"
+    browser.js(f"{on}.click()")
+    assert browser.js(rows) == 100
+    assert browser.js("document.querySelector('.pager span').textContent") == "501 to 600 of 600 rows"
+    assert browser.js(f"{on}.disabled")
+    browser.js("document.querySelectorAll('#settings th button')[2].click()")
+    assert browser.js("document.querySelector('#settings tbody tr').cells[2].textContent") == "1"
+    assert browser.js(rows) == 500

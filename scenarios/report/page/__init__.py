@@ -46,9 +46,15 @@ def write_page(folder: str | os.PathLike[str]) -> Path:
 
 
 def _page(folder: Path) -> Page:
+    from footfall.scenarios.report.page.gate import gate_page
     from footfall.scenarios.report.page.run import run_page
+    from footfall.scenarios.report.page.sweep import sweep_page
 
-    kinds: dict[str, Callable[[Path, Mapping[str, Any]], Page]] = {"scores.json": run_page}
+    kinds: dict[str, Callable[[Path, Mapping[str, Any]], Page]] = {
+        "scores.json": run_page,
+        "study.json": sweep_page,
+        "gate.json": gate_page,
+    }
     if not folder.is_dir():
         raise InputError("no such folder", folder)
     name = next((name for name in kinds if (folder / name).is_file()), None)

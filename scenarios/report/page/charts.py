@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -15,6 +16,8 @@ SOFT, INK = "soft", "ink"  # colours of truth and of sums
 SLOTS = tuple(
     dict.fromkeys((*COLOURS.values(), *MORE))
 )  # of the figures; page.css has a page's shade of each
+
+_WIDE = 30.0  # of the largest value over the smallest: from here on an axis is logarithmic
 
 Numbers = Sequence[float] | np.ndarray
 
@@ -67,13 +70,23 @@ class Trace:
 
 
 @dataclass(frozen=True)
+class Mark:
+    """What is marked along an `axis` ("x" or "y"): a line where both ends are the same, else a band."""
+
+    axis: str
+    low: float
+    high: float
+    colour: str
+    dash: str = "solid"
+
+
+@dataclass(frozen=True)
 class Chart:
     """Traces in the `figure` of id `place`.
 
     Attributes
     ----------
     equal : whether a metre is as long along y as along x
-    marks : (from, to, colour, dash) along x: a line where both are the same, else what is shaded between
     when : as of a trace, for several charts of one place
     """
 
@@ -82,7 +95,7 @@ class Chart:
     y: Axis
     traces: Sequence[Trace]
     equal: bool = False
-    marks: tuple[tuple[float, float, str, str], ...] = ()
+    marks: tuple[Mark, ...] = ()
     when: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -116,8 +129,23 @@ def chart_data(charts: Sequence[Chart]) -> dict[str, Any]:
     made = []
     for chart in charts:
         axes = {"x": asdict(chart.x), "y": asdict(chart.y)}
-        made.append(vars(chart) | axes | {"traces": [trace_data(trace) for trace in chart.traces]})
+        parts = {
+            "traces": [trace_data(trace) for trace in chart.traces],
+            "marks": [vars(mark) for mark in chart.marks],
+        }
+        made.append(vars(chart) | axes | parts)
     return {"charts": made, "arrays": list(arrays.kept)}
+
+
+def scale(title: str, values: np.ndarray) -> Axis:
+    """An axis for these values: logarithmic where they are positive and far apart, with ticks of 1, 2, 5."""
+    values = values[np.isfinite(values)]
+    if not len(values) or values.min() <= 0 or values.max() < _WIDE * values.min():
+        return Axis(title)
+    decades = range(math.floor(math.log10(values.min())), math.ceil(math.log10(values.max())) + 1)
+    steps = (1, 2, 5) if len(decades) <= 4 else (1,)
+    ticks = tuple((step * 10.0**decade, f"{step * 10.0**decade:g}") for decade in decades for step in steps)
+    return Axis(title, log=True, ticks=ticks)
 
 
 def thinned(*columns: np.ndarray, most: int = 300) -> list[np.ndarray]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from string import Template
+from typing import Any
 
+from footfall.scenarios.report.page import html
 from footfall.scenarios.report.page.charts import Chart, chart_data
 from footfall.scenarios.report.page.html import text
 
@@ -30,6 +32,25 @@ class Page:
     lead: str
     sections: Sequence[Section]
     charts: Sequence[Chart]
+
+
+def sentence(described: str | None) -> str:
+    """A description as a first sentence; nothing where there is none."""
+    return f"{described[0].upper()}{described[1:].rstrip('.')}. " if described else ""
+
+
+def versions(told: Mapping[str, Any]) -> str:
+    """What made the results, as their document says it: versions, and digests of the sources."""
+    return html.pairs("Versions", told["versions"]) + html.pairs("Digests", told.get("digests") or {})
+
+
+def again(told: Mapping[str, Any], file: str) -> str:
+    """The command that makes the results again, as the document in `file` says it."""
+    if not told.get("command"):
+        return html.paragraph(f"{file} does not tell the command: an earlier version wrote it.")
+    return html.command(told["command"]) + html.paragraph(
+        "With the versions above the same scores come out, bit for bit."
+    )
 
 
 def render(page: Page) -> str:

@@ -45,7 +45,9 @@ def told(value: Any) -> str:
     """A setting as a reader would write it."""
     if isinstance(value, str):
         return value
-    if isinstance(value, bool) or value is None:
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
         return json.dumps(value)
     if isinstance(value, float):
         return f"{value:.6g}"
@@ -114,7 +116,7 @@ def tiles(entries: Sequence[tuple[str, str, str, str]]) -> str:
     return f'<ul class="tiles">{made}</ul>\n'
 
 
-def figure(place: str, heading: str, caption: str, *, kind: str = "", legend: str = "") -> str:
+def figure(place: str, heading: str, caption: str = "", *, kind: str = "", legend: str = "") -> str:
     """Room for a chart, which a script draws into it."""
     return (
         f'<figure class="{kind}"><h3 id="{place}-heading">{text(heading)}</h3>{legend}'
@@ -141,9 +143,9 @@ def boxes(name: str, title: str, options: Mapping[str, str], colours: Mapping[st
     return _choice(name, title, options, "checkbox", colours)
 
 
-def controls(*choices: str) -> str:
-    """Choices in a bar that stays in sight; without a script it is not shown."""
-    return f'<form class="controls">{"".join(choices)}</form>\n'
+def controls(*choices: str, kept: bool = True) -> str:
+    """Choices in a bar, which is `kept` in sight on a wide screen; without a script it is not shown."""
+    return f'<form class="controls{" kept" if kept else ""}">{"".join(choices)}</form>\n'
 
 
 def _choice(name: str, title: str, options: Mapping[str, str], kind: str, colours: Mapping[str, str]) -> str:

@@ -7,6 +7,8 @@
   const touch = matchMedia("(hover: none), (pointer: coarse)");
   const narrow = matchMedia("(max-width: 760px)");
 
+  const FONT = "system-ui, sans-serif";
+
   const decoded = new Map();
   const numbers = (index) => {
     if (!decoded.has(index)) {
@@ -38,7 +40,7 @@
     mode: trace.mode,
     opacity: trace.opacity,
     line: { color: colour(trace.colour), width: trace.width, dash: trace.dash },
-    marker: { color: colour(trace.colour), size: trace.size, symbol: trace.symbol, line: { width: 0 } },
+    marker: { color: colour(trace.colour), size: trace.size, symbol: trace.symbol, line: { width: trace.symbol.endsWith("-open") ? 2 : 0 } },
     ...(trace.hover.length
       ? { hoverinfo: "text", hovertext: Array.from(numbers(trace.x), (_, i) => label(trace, i)) }
       : { hoverinfo: "skip" }),
@@ -54,26 +56,31 @@
     ...(told.ticks.length
       ? { tickvals: told.ticks.map((tick) => tick[0]), ticktext: told.ticks.map((tick) => escaped(tick[1])) }
       : { nticks: narrow.matches ? 5 : 8 }),
-    ...(told.bounds ? { range: told.bounds } : {}),
+    ...(told.bounds ? { range: told.log ? told.bounds.map(Math.log10) : told.bounds } : {}),
   });
 
   const layout = (chart) => ({
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: "rgba(0,0,0,0)",
-    font: { color: colour("ink"), family: "system-ui, sans-serif", size: 12 },
+    font: { color: colour("ink"), family: FONT, size: 12 },
     margin: { l: 8, r: 12, t: 8, b: 8 },
     showlegend: false,
     hovermode: "closest",
-    hoverlabel: { bgcolor: colour("card"), bordercolor: colour("soft"), font: { color: colour("ink") }, align: "left" },
+    hoverlabel: { bgcolor: colour("card"), bordercolor: colour("soft"), font: { color: colour("ink"), family: FONT }, align: "left" },
     dragmode: touch.matches ? false : "zoom",
     uirevision: JSON.stringify(chart.when), // what was zoomed stays so while methods come and go
     xaxis: axis(chart.x),
     yaxis: { ...axis(chart.y), ...(chart.equal ? { scaleanchor: "x" } : {}) },
-    shapes: (chart.marks || []).map(([from, to, name, dash]) => ({
-      type: from === to ? "line" : "rect", x0: from, x1: to, y0: 0, y1: 1, yref: "paper", layer: "below",
-      line: { color: colour(name), width: from === to ? 2 : 0, dash },
-      fillcolor: colour(name), opacity: from === to ? 1 : 0.15,
-    })),
+    shapes: chart.marks.map(({ axis, low, high, colour: name, dash }) => {
+      const across = axis === "x" ? "y" : "x", line = low === high;
+      return {
+        type: line ? "line" : "rect", layer: line ? "above" : "below",
+        [`${axis}0`]: low, [`${axis}1`]: high,
+        [`${across}0`]: 0, [`${across}1`]: 1, [`${across}ref`]: "paper",
+        line: { color: colour(name), width: line ? 2 : 0, dash },
+        fillcolor: colour(name), opacity: line ? 1 : 0.2,
+      };
+    }),
   });
 
   const config = {

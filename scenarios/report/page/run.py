@@ -15,6 +15,7 @@ from footfall.pdr.track import Track, read_track
 from footfall.scenarios.judge.score import Comparison, compare
 from footfall.scenarios.judge.statistics import running_mean
 from footfall.scenarios.report.page import html
+from footfall.scenarios.report.page.cases import flat
 from footfall.scenarios.report.page.charts import (
     INK,
     SOFT,
@@ -26,7 +27,7 @@ from footfall.scenarios.report.page.charts import (
     symbols_of,
     thinned,
 )
-from footfall.scenarios.report.page.document import Page, Section
+from footfall.scenarios.report.page.document import Page, Section, again, sentence, versions
 from footfall.scenarios.report.page.scores import score_columns, scores_row
 from footfall.simulate.walk import TrueFootfalls, footfalls_path
 from footfall.tables import read_table, read_units, require_columns
@@ -83,7 +84,8 @@ def run_page(folder: Path, told: Mapping[str, Any]) -> Page:
     walks = [_read(folder, number, methods) for number in range(1, min(len(rows), MOST_WALKS) + 1)]
     colours = slots_of(methods)
     count = "1 walk" if len(rows) == 1 else f"{len(rows)} walks"
-    lead = f"{count} of {told['distance_m']:,.0f} m, IMU {rows[0]['imu']}, methods {', '.join(methods)}."
+    walked = f"{count} of {told['distance_m']:,.0f} m, IMU {rows[0]['imu']}, methods {', '.join(methods)}."
+    lead = sentence(told.get("description")) + walked
     causes = _shown_causes(walks)
     sections = (
         Section("summary", "Summary", _tiles(told["mean"], colours)),
@@ -91,12 +93,9 @@ def run_page(folder: Path, told: Mapping[str, Any]) -> Page:
         Section("scores", "Scores", _scores(told, rows, methods)),
         Section("parameters", "Parameters", _parameters(told, walks[0])),
         Section("origin", "Seeds and versions", _origin(told, rows, walks[0])),
-        Section("again", "Make it again", _again(told)),
+        Section("again", "Make it again", again(told, "scores.json")),
     )
-    described = told.get("description")
-    title = str(told["scenario"])
-    lead = f"{described[0].upper()}{described[1:].rstrip('.')}. {lead}" if described else lead
-    return Page("run", title, lead, sections, list(_charts(walks, methods, colours, causes)))
+    return Page("run", str(told["scenario"]), lead, sections, list(_charts(walks, methods, colours, causes)))
 
 
 def _read(folder: Path, number: int, methods: Sequence[str]) -> _Walked:
@@ -290,9 +289,10 @@ def _tiles(mean: Mapping[str, Mapping[str, float]], colours: Mapping[str, str]) 
     made = []
     for name, score in mean.items():
         more = f"mean heading error, {score['heading_error_final_deg']:.1f} deg at the end"
-        if name != "pdr" and "pdr" in mean and score["heading_error_mean_deg"] > 0:
-            times = mean["pdr"]["heading_error_mean_deg"] / score["heading_error_mean_deg"]
-            more += f"; {times:.1f} times smaller than uncorrected"
+        ours, theirs = score["heading_error_mean_deg"], mean.get("pdr", score)["heading_error_mean_deg"]
+        if name != "pdr" and "pdr" in mean and min(ours, theirs) > 0:
+            times, word = (theirs / ours, "smaller") if ours <= theirs else (ours / theirs, "larger")
+            more += f"; {times:.1f} times {word} than uncorrected"
         made.append((name, colours[name], f"{score['heading_error_mean_deg']:.1f} deg", more))
     return html.tiles(made)
 
@@ -345,15 +345,6 @@ def _parameters(told: Mapping[str, Any], walk: _Walked) -> str:
     return made + html.pairs("Dead reckoning", common) + "</div>"
 
 
-def flat(values: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
-    """Nested settings by dotted name."""
-    for key, value in values.items():
-        if isinstance(value, Mapping):
-            yield from flat(value, f"{before}{key}.")
-        else:
-            yield f"{before}{key}", value
-
-
 def _origin(told: Mapping[str, Any], rows: Sequence[Mapping[str, Any]], walk: _Walked) -> str:
     seeds = [
         [
@@ -370,16 +361,4 @@ def _origin(told: Mapping[str, Any], rows: Sequence[Mapping[str, Any]], walk: _W
     digests = {
         key: walk.poses.meta[key] for key in ("scenario_digest", "policy", "code") if key in walk.poses.meta
     }
-    return (
-        html.table("Seeds", heads, seeds)
-        + html.pairs("Versions", told["versions"])
-        + html.pairs("Digests of what walked", digests)
-    )
-
-
-def _again(told: Mapping[str, Any]) -> str:
-    if "command" not in told:
-        return html.paragraph("scores.json does not tell the command: an earlier version wrote it.")
-    return html.command(told["command"]) + html.paragraph(
-        "With the versions above the same files come out, bit for bit."
-    )
+    return html.table("Seeds", heads, seeds) + versions(told) + html.pairs("Digests of what walked", digests)

@@ -196,6 +196,8 @@ def test_a_method_that_fails_is_infinitely_bad_there(file):
     failures = found.rows.of("mine").failures
     assert 0 < len(failures) < 10
     assert "positive at the end" in failures[0].error
+    assert (found[0].failed, found[0].failure) == (len(failures), failures[0].error)
+    assert (found[1].failed, found[1].failure) == (0, "")
     assert found[0].high == float("inf")
     assert found[1].low == pytest.approx(-100)  # where it alone failed, pdr is infinitely better
 
