@@ -56,7 +56,7 @@ def sweep(
     """Do a study: as many walks, units, sheets, settings and methods as it says; each gives a row of scores.
 
     Start it again after whatever has ended it: what is done is not done again, and a changed study keeps the
-    parts that still belong to it. The folder gets results.parquet, study.json and tracks/.
+    parts that still belong to it. The folder gets report.html to look at, and results.parquet.
     """
     from footfall.scenarios.parameters import parsed
     from footfall.scenarios.studies.study import Study
@@ -170,7 +170,7 @@ def _report(study: Study, folder: Path, command: str, seconds: float, *, as_json
             _line(f"  {count:,}  {reason}")
         if len(reasons) > REASONS:
             _line(f"  and {len(reasons) - REASONS:,} reasons more, in the column error")
-        _line(f"{folder / 'results.parquet'}")
+        _line(f"{folder / 'results.parquet'}, {folder / 'report.html'}")
         _line(f"Again: {command}   (nothing is left to do)")
     if lost == len(rows):
         raise InputError(f"all {lost:,} rows failed, as: {reasons[0][1]}", study.source or study.name)

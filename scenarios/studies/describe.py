@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -43,10 +44,15 @@ def document(plan: Plan, command: str = "") -> dict[str, Any]:
     }
 
 
-def write_document(plan: Plan, folder: Path, command: str = "") -> None:
-    """study.json in the study's folder."""
-    with replacing(folder / "study.json") as temporary:
-        temporary.write_text(json.dumps(document(plan, command), indent=2) + "\n", encoding="utf-8")
+def write_document(plan: Plan, folder: Path, command: str = "") -> bool:
+    """study.json in the study's folder; whether it says something else than before."""
+    file, text = folder / "study.json", json.dumps(document(plan, command), indent=2) + "\n"
+    with suppress(OSError):
+        if file.read_text(encoding="utf-8") == text:
+            return False
+    with replacing(file) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    return True
 
 
 def headline(plan: Plan) -> str:

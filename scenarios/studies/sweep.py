@@ -123,7 +123,7 @@ def _done(
     command: str,
     warnings: tuple[str, ...],
 ) -> Iterator[Progress]:
-    write_document(plan, place.path, command)
+    told = write_document(plan, place.path, command)
     left = place.left(plan.tasks)
     watch = _Watch(plan, left, place.path, warnings, on_progress)
     if left:
@@ -135,11 +135,17 @@ def _done(
         if place.left(plan.tasks):
             yield replace(watch.now, stage="stopped")
             return
-    if not place.is_compacted(plan):
+    whole = place.is_compacted(plan)
+    if not whole:
         watch.say("writing")
         place.compact(plan)
     place.write_timing()
-    write_tracks(plan, place, lambda: watch.say("writing"))
+    drawn = write_tracks(plan, place, lambda: watch.say("writing"))
+    if told or drawn or not whole or not (place.path / "report.html").is_file():
+        from footfall.scenarios.report.page import write_page  # late: what draws
+
+        watch.say("writing")
+        write_page(place.path)
     yield replace(watch.now, stage="finished", share=1.0)
 
 

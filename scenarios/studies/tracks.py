@@ -27,26 +27,32 @@ WHICH = ("median", "worst", "best")  # in this order, while there is room
 ERROR = "heading_error_mean_deg"
 
 
-def write_tracks(plan: Plan, place: StudyFolder, on_track: Callable[[], None]) -> None:
+def write_tracks(plan: Plan, place: StudyFolder, on_track: Callable[[], None]) -> bool:
     """tracks/ of a study whose dataset is there: at most twelve tracks, true footfalls, index.json.
 
     What an earlier call made of the same rows stays.
+
+    Returns
+    -------
+    Whether they were made.
     """
     rows = read_rows(place.results)
-    chosen = [_entry(row, which, tuple(plan.kinds)) for row, which in chosen_rows(rows)]
+    picked = list(chosen_rows(rows))
+    chosen = [_entry(row, which, tuple(plan.kinds)) for row, which in picked]
     folder = place.path / "tracks"
     if _there(folder, chosen):
-        return
+        return False
     folder.mkdir(exist_ok=True)
     for file in (*folder.glob("*.parquet"), folder / "index.json"):
         file.unlink(missing_ok=True)
     tasks = {key: task for task in plan.tasks for key in task.cells}
-    keys = [row["key"] for row, _ in chosen_rows(rows)]
+    keys = [row["key"] for row, _ in picked]
     for entry, key in sorted(zip(chosen, keys, strict=True), key=lambda pair: tasks[pair[1]].walk):
         on_track()
         _write(entry, key, tasks[key], folder)
     with replacing(folder / "index.json") as temporary:
         temporary.write_text(json.dumps(chosen, indent=2) + "\n", encoding="utf-8")
+    return True
 
 
 def chosen_rows(rows: Any) -> Iterator[tuple[dict[str, Any], str]]:

@@ -48,6 +48,14 @@ def place(tmp_path, workshop, monkeypatch):
     return tmp_path
 
 
+@pytest.fixture(autouse=True)
+def pages(monkeypatch):
+    """Folders whose page was written."""
+    written = []
+    monkeypatch.setattr("footfall.scenarios.report.page.write_page", written.append)
+    return written
+
+
 @pytest.fixture
 def store(tmp_path, monkeypatch):
     """Footfalls of this test alone."""
@@ -98,7 +106,7 @@ def test_only_what_must_is_done_again(place, store, monkeypatch):
     recorded = []
     real = trials.record
     monkeypatch.setattr(trials, "record", lambda *given, **keys: recorded.append(1) or real(*given, **keys))
-    monkeypatch.setattr("footfall.scenarios.studies.sweep.write_tracks", lambda *given: None)
+    monkeypatch.setattr("footfall.scenarios.studies.sweep.write_tracks", lambda *given: False)
     one = {"axes": {"pdr.tilt_gain": [0.1, 0.4], "hdr.theta_w_deg_s": [0.1, 0.6]}}
     before = finished(made(place, design=one), place / "out")
     assert len(recorded) == 2  # one a unit, for two tilt gains and all methods
@@ -139,7 +147,7 @@ def test_a_walk_that_falls_is_rows_while_the_rest_goes_on(place, store):
     assert all("fell" in row["error"] for row in rows if row["scenario"] == "pushed")
 
 
-def test_tracks_are_those_of_the_best_the_median_and_the_worst(place, store):
+def test_tracks_are_those_of_the_best_the_median_and_the_worst(place, store, pages):
     study = made(place, cases={"walks": 1, "units": 4})
     rows = finished(study, place / "out")
     folder = place / "out" / "tracks"
@@ -158,8 +166,12 @@ def test_tracks_are_those_of_the_best_the_median_and_the_worst(place, store):
         )
         assert track.meta["method"] == one["method"]
     before = {file: file.stat().st_mtime_ns for file in folder.iterdir()}
+    (place / "out" / "report.html").write_text("a page")
     finished(study, place / "out")
     assert {file: file.stat().st_mtime_ns for file in folder.iterdir()} == before
+    assert pages == [place / "out"]  # nothing to say anew
+    finished(made(place, cases={"walks": 1, "units": 3}), place / "out")
+    assert pages == [place / "out"] * 2
 
 
 def test_a_task_may_be_given_its_walk(place):

@@ -21,8 +21,9 @@ CASES = {"walks": 2, "units": 40}
 
 @pytest.fixture(autouse=True)
 def no_tracks(monkeypatch):
-    """They need walks."""
-    monkeypatch.setattr(sweeping, "write_tracks", lambda *given: None)
+    """They need walks, and the page needs them."""
+    monkeypatch.setattr(sweeping, "write_tracks", lambda *given: False)
+    monkeypatch.setattr("footfall.scenarios.report.page.write_page", lambda folder: None)
 
 
 def small(**table):
