@@ -1,8 +1,8 @@
 """The command line: `footfall --help`.
 
-Results go to standard output, everything else to standard error. Exit codes: 0 well, 1 a gate or a check failed,
-2 bad input, told in one sentence, 3 no gate failed, but some are undecided, 4 stopped, and may be taken up again,
-130 interrupted.
+Results go to standard output, everything else to standard error. Exit codes: 0 well, 1 a gate or a check
+failed, 2 bad input, told in one sentence, 3 no gate failed, but some are undecided, 4 stopped, and may be
+taken up again, 130 interrupted.
 
 Each command is a file of its name. It is only a signature until it is called: what it needs it imports then,
 so that `footfall list` does not wait for what `footfall run` loads.
