@@ -39,6 +39,7 @@ MARGIN = 0.1
 CASES = """
 [cases]
 scenario = "closed-loop"
+walks = {walks}
 units = {units}
 [[gates]]
 name = "no worse"
@@ -70,7 +71,7 @@ def log_ratios(units: int) -> np.ndarray:
     """(units,) of the mean heading errors of HDR with theta_w 0.30 and 0.25 deg/s, centred."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "gates.toml"
-        file.write_text(CASES.format(units=units, against="changed", other="hdr"), encoding="utf-8")
+        file.write_text(CASES.format(walks=5, units=units, against="changed", other="hdr"), encoding="utf-8")
         changed = METHODS["hdr"].renamed("changed").with_params({"theta_w_deg_s": 0.3})
         made = read_gates(file, {"changed": changed})
         rows = scored(made, range(units))
@@ -104,7 +105,8 @@ def unchanged(runs: int, units: int) -> dict[str, int]:
     count = {"pass": 0, "undecided": 0, "fail": 0}
     with tempfile.TemporaryDirectory() as folder, err.status("unchanged") as status:
         file = Path(folder) / "gates.toml"
-        file.write_text(CASES.format(units=units, against="b.parquet", other="b.parquet"), encoding="utf-8")
+        text = CASES.format(walks=1, units=units, against="b.parquet", other="b.parquet")
+        file.write_text(text, encoding="utf-8")
         write_baseline(scored(read_gates(file), range(units)), Path(folder) / "b.parquet")
         for number in range(runs):
             status.update(f"unchanged: run {number + 1} of {runs}")

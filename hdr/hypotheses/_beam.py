@@ -53,8 +53,8 @@ from footfall.hdr.hypotheses._sight import (
     WARMTH,
 )
 
-MODE, HABIT, SCALE, WORLD, ENTRY, PARENT = range(6)  # of a label
-LABELS = 6
+MODE, HABIT, SCALE, WORLD, ENTRY, PARENT, CONTINUES = range(7)  # of a label
+LABELS = 7
 NOWHERE, ALONG = range(2)  # worlds without and with dominant directions
 COUNT, BEGUN, LOST = range(3)  # of the counters: hypotheses, first stride seen, strides of no direction since
 COUNTERS = 3
@@ -142,7 +142,7 @@ def step(x, P, weights, labels, counters, lengths, x2, P2, row, c, out):  # type
         # straight
         to_straight = weight + chances[mode, STRAIGHT]
         to_straight += log_normal(left, s + wavy)
-        tried = labels[j, WORLD] == ALONG and mode != STRAIGHT
+        tried = labels[j, WORLD] == ALONG and mode == TURN  # curves end anywhere
         along = along_one(x[j], P[j], k, left, s, wavy, c) if tried else 0.0
         for other in range(habits):
             if other != habit and mode != TURN:
@@ -204,6 +204,7 @@ def put(branch, chance, n, label, parent, mode, habit, entry, value):  # type: i
     """Note a branch and its weight; returns how many there are."""
     branch[n, MODE], branch[n, HABIT], branch[n, ENTRY], branch[n, PARENT] = mode, habit, entry, parent
     branch[n, SCALE], branch[n, WORLD] = label[SCALE], label[WORLD]
+    branch[n, CONTINUES] = 1 if mode == label[MODE] and entry == STAYS else 0
     chance[n] = value
     return n + 1
 
@@ -216,7 +217,8 @@ def select(  # type: ignore[no-untyped-def]
     k, a, g, abreast = np.zeros(STATES), np.zeros(STATES), np.zeros(STATES), np.zeros(STATES)
     aligning(abreast)
     best = chance.max()
-    able = np.flatnonzero(chance >= best - c.prune)
+    goes_on = branch[:, CONTINUES] == 1
+    able = np.flatnonzero((chance >= best - c.sprout) | (goes_on & (chance >= best - c.prune)))
     order = able[np.argsort(-chance[able], kind="mergesort")]
     kept = 0
     made = np.empty(c.hypotheses)

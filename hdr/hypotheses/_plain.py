@@ -47,6 +47,7 @@ class Hypothesis:
     world: int
     entry: int
     parent: int
+    goes_on: bool
     weight: float
     mean: np.ndarray
     cov: np.ndarray
@@ -71,7 +72,7 @@ def first(c: Constants, course: float) -> list[Hypothesis]:
             cov[REFERENCE, PATH] = cov[PATH, REFERENCE] = cov[PATH, PATH]
             cov[REFERENCE, REFERENCE] = cov[PATH, PATH] + c.beside**2
             weight = math.log(chance / ways)
-            found.append(Hypothesis(mode, habit, scale, world, STAYS, 0, weight, mean, cov))
+            found.append(Hypothesis(mode, habit, scale, world, STAYS, 0, False, weight, mean, cov))
     return found
 
 
@@ -205,7 +206,8 @@ class PlainBeam:
         for parent, before in enumerate(moved):
             for mode, habit, entry, chance in self._branches(before, good):
                 child = replace(before, mode=mode, habit=habit, entry=entry, parent=parent)
-                child = replace(child, weight=before.weight + chance)
+                goes_on = mode == before.mode and entry == STAYS
+                child = replace(child, weight=before.weight + chance, goes_on=goes_on)
                 made.append(self._seen(child, row, length) if good else child)
         self._select(made, row)
         self.last = row[_sight.DISTANCE] if good else self.last
@@ -249,7 +251,7 @@ class PlainBeam:
             if of.mode == TURN and others:
                 lot = math.log(1 - c.habit_change if habit == of.habit else c.habit_change / others)
             lot += chances[of.mode, STRAIGHT]
-            new = of.world == _beam.ALONG and of.mode != STRAIGHT
+            new = of.world == _beam.ALONG and of.mode == TURN
             found.append((STRAIGHT, habit, STAYS, lot + (math.log(1 - c.along) if new else 0.0)))
             if new:
                 found.append((STRAIGHT, habit, ALIGNED, lot + math.log(c.along)))
@@ -267,8 +269,10 @@ class PlainBeam:
         best = max(each.weight for each in made)
         kept: list[Hypothesis] = []
         for each in sorted(made, key=lambda one: -one.weight):
-            if len(kept) == c.hypotheses or each.weight < best - c.prune:
+            if len(kept) == c.hypotheses:
                 break
+            if each.weight < best - (c.prune if each.goes_on else c.sprout):
+                continue
             at = next((i for i, other in enumerate(kept) if self._alike(each, other, row)), None)
             if at is None:
                 kept.append(each)

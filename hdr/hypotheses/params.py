@@ -43,8 +43,9 @@ class HypothesesParams:
     turn_after_short : chance of a turn after strides too short to have a direction
     shortest_m : m, a stride that has a direction
     directions : evenly spaced dominant directions, of which none need exist; along_first : chance that they
-        do; along : chance that a new straight then lies along one; beside : rad, by which it does not quite
-    hypotheses : most that are kept; prune : nats below the best at which one is dropped
+        do; along : chance that a straight after a turn then lies along one; beside : rad, by which not quite
+    hypotheses : most that are kept; prune : nats below the best at which one is dropped; sprout : the same of
+        one whose mode is new
     merge : standard deviations within which two of the same kind are one
     """
 
@@ -62,7 +63,7 @@ class HypothesesParams:
     scales: tuple[float, ...] = setting((1.0, 0.1), gt=0)
     wander_m: tuple[float, ...] = setting((0.1, 0.1, 0.4), unit="m", gt=0)
     wander_s: tuple[float, ...] = setting((1.7, 1.7, 3.0), unit="s", gt=0)
-    straight_curve: tuple[float, ...] = setting((0.0004, 0.03, 0.0004), gt=0, lt=0.5)
+    straight_curve: tuple[float, ...] = setting((0.0004, 0.06, 0.0004), gt=0, lt=0.5)
     place_m: float = setting(0.012, unit="m", gt=0)
     course: float = setting(0.5 * DEG, unit="rad", gt=0)
     meander: float = setting(0.02 * DEG, unit="rad/rt-m", ge=0)
@@ -70,9 +71,9 @@ class HypothesesParams:
     gentle: float = setting(0.3 * DEG, unit="rad/m", gt=0)
     tight: float = setting(2.5 * DEG, unit="rad/m", gt=0)
     gentle_chance: float = setting(0.6, gt=0, lt=1)
-    bending: float = setting(0.001 * DEG, unit="rad/m/rt-m", ge=0)
+    bending: float = setting(0.0003 * DEG, unit="rad/m/rt-m", ge=0)
     straight_turn: float = setting(0.01, gt=0, lt=0.5)
-    curve_straight: float = setting(0.01, gt=0, lt=0.3)
+    curve_straight: float = setting(0.006, gt=0, lt=0.3)
     curve_turn: float = setting(0.01, gt=0, lt=0.3)
     curve_curve: float = setting(0.0025, gt=0, lt=0.3)
     turn_straight: float = setting(0.6, gt=0, lt=0.8)
@@ -82,11 +83,12 @@ class HypothesesParams:
     turn_after_short: float = setting(0.3, gt=0, lt=1)
     shortest_m: float = setting(0.45, unit="m", gt=0)
     directions: int = setting(4, ge=1, le=36)
-    along_first: float = setting(0.5, ge=0, lt=1)
+    along_first: float = setting(0.2, ge=0, lt=1)
     along: float = setting(0.9, gt=0, lt=1)
     beside: float = setting(1.0 * DEG, unit="rad", gt=0)
     hypotheses: int = setting(64, ge=4, le=1024)
     prune: float = setting(25.0, gt=0)
+    sprout: float = setting(12.0, gt=0)
     merge: float = setting(0.4, ge=0)
 
     def __post_init__(self) -> None:
@@ -176,6 +178,7 @@ class Constants(NamedTuple):
     beside: float
     hypotheses: int
     prune: float
+    sprout: float
     merge: float
     load_sd: np.ndarray
     log_transitions: np.ndarray

@@ -19,7 +19,9 @@ def smoothed(footfalls: Footfalls, params: HypothesesParams | None = None) -> Be
     """Every footfall's belief, given the whole walk.
 
     The sequences of modes that lead to the hypotheses at the end that stand for all (`leaders`) are smoothed
-    one by one, and averaged by their weights. `evidence` is that of the filter.
+    one by one, and averaged by their weights. A beam remembers something of all that it joined. Where it says
+    something else of the end than these few do, the walk is undecided and the filter's beliefs stand.
+    `evidence` is that of the filter.
 
     Raises
     ------
@@ -37,7 +39,7 @@ def smoothed(footfalls: Footfalls, params: HypothesesParams | None = None) -> Be
         labels, first = sequence(history, int(k))
         ways = len(c.scales)
         first_mode, habit = divmod(first % (2 * len(c.wander_m) * ways), len(c.wander_m) * ways)
-        mode_of, habit_of, scale, _, entry, _ = labels.T
+        mode_of, habit_of, scale, _, entry, *_ = labels.T
         drift, variance = _smooth.smooth(
             rows,
             c,
@@ -53,6 +55,8 @@ def smoothed(footfalls: Footfalls, params: HypothesesParams | None = None) -> Be
         modes.append(mode_of)
     drift, variance, mode = np.array(drifts), np.array(variances), np.array(modes)
     mean = share @ drift
+    if abs(mean[-1] - told[-1, _beam.MEAN]) > told[-1, _beam.SD]:
+        return beliefs(footfalls, params)
     sd = np.sqrt(np.maximum(share @ (variance + (drift - mean) ** 2), 0.0))
     straight, curve, turn = (share @ (mode == which) for which in range(3))
     second, second_weight = _second(drift, variance, share)
@@ -94,9 +98,9 @@ def leaders(weights: np.ndarray, drift: np.ndarray, variance: np.ndarray) -> tup
 
 
 def sequence(history: np.ndarray, last: int) -> tuple[np.ndarray, int]:
-    """Labels (n, 6) that lead to the hypothesis `last` of the end, and which of the first they begin with.
+    """Labels (n, 7) that lead to the hypothesis `last` of the end, and which of the first they begin with.
 
-    history : (n, hypotheses, 6) of `_beam.beam`; row 0 of the labels is that of row 1
+    history : (n, hypotheses, 7) of `_beam.beam`; row 0 of the labels is that of row 1
     """
     n = len(history)
     labels = np.zeros((n, history.shape[2]), dtype=np.int64)

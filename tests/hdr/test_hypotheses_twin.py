@@ -47,7 +47,7 @@ def test_the_beam_equals_its_twin(rows):
         expected = [plain["mean"], plain["sd"], *plain["chances"], plain["rate"], plain["second"]]
         expected += [plain["second_weight"], plain["evidence"]]
         np.testing.assert_allclose(told[i], expected, rtol=1e-8, atol=1e-9, err_msg=str(i))
-        labels = [[o.mode, o.habit, o.scale, o.world, o.entry, o.parent] for o in twin.found]
+        labels = [[o.mode, o.habit, o.scale, o.world, o.entry, o.parent, o.goes_on] for o in twin.found]
         assert history[i, : len(labels)].tolist() == labels
 
 

@@ -34,7 +34,7 @@ class Browser:
         for flag in FLAGS:
             options.add_argument(flag)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        self.opened = None
+        self.opened, self.width = None, 0
         self.driver = webdriver.Chrome(options=options, service=Service(driver))
 
     def tell(self, command, **parameters):
@@ -45,7 +45,7 @@ class Browser:
         wanted = (page, width, dark, script)
         if self.opened == wanted and not anew:
             return
-        self.opened = wanted
+        self.opened, self.width = wanted, width
         phone = width < 500
         self.tell(
             "Emulation.setDeviceMetricsOverride",

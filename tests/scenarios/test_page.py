@@ -12,6 +12,7 @@ import pytest
 from footfall.errors import InputError
 from footfall.pdr.track import read_track
 from footfall.scenarios.report.page import write_page
+from footfall.scenarios.report.page.charts import Trace, frame
 from footfall.tables import read_table, write_table
 from tests.helpers.commands import expect_one_sentence
 from tests.helpers.pages import METHODS, NASTY, Page, budget_of, run_folder
@@ -116,6 +117,18 @@ def test_the_correction_is_what_a_method_takes_for_drift(folder, page):
     assert [trace["name"] for trace in chart["traces"]] == ["true drift", "hdr", NASTY]
     t, drift, _ = page.trace("drift", "true drift", walk="1")
     assert drift[15] == pytest.approx(np.degrees(1e-5 * 16 - 3e-5), rel=1e-3)  # a mean of its neighbours
+
+
+def test_a_jump_leaves_the_frame_and_flattens_nothing(page):
+    flat, jump = np.linspace(0.0, 1.0, 199), np.array([-40.0])
+    low, high = frame([Trace("a", flat, flat, "s0"), Trace("b", jump, jump, "s1")])
+    assert -0.4 < low < 0
+    assert 1 < high < 1.4
+    assert frame([Trace("a", flat[:1], flat[:1], "s0")]) == (-1, 1)  # of a level line, a frame all the same
+    for chart in page.charts("drift"):
+        low, high = chart["y"]["bounds"]
+        assert all(low < page.arrays[trace["y"]].min() for trace in chart["traces"])
+        assert all(high > page.arrays[trace["y"]].max() for trace in chart["traces"])
 
 
 def test_the_budget_sums_drift_up_over_the_strides(page):

@@ -37,7 +37,8 @@ def phone(browser, page):
 
 
 def sideways(browser):
-    return browser.js("document.documentElement.scrollWidth - innerWidth")
+    """How much wider a page is than the screen: a phone's innerWidth grows with what is too wide."""
+    return browser.js("document.documentElement.scrollWidth") - browser.width
 
 
 @pytest.mark.parametrize(("width", "dark"), [(1280, False), (390, True)])

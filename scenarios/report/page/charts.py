@@ -148,6 +148,13 @@ def scale(title: str, values: np.ndarray) -> Axis:
     return Axis(title, log=True, ticks=ticks)
 
 
+def frame(traces: Sequence[Trace]) -> tuple[float, float]:
+    """Bounds of y that leave out at most 5 % of the points, so that one jump does not flatten all lines."""
+    low, high = np.percentile(np.concatenate([np.asarray(trace.y) for trace in traces]), (2.5, 97.5))
+    rim = 0.2 * (high - low) or 1.0
+    return float(low - rim), float(high + rim)
+
+
 def thinned(*columns: np.ndarray, most: int = 300) -> list[np.ndarray]:
     """At most so many rows of columns, evenly taken, first and last among them: enough for a smooth line."""
     count = len(columns[0])

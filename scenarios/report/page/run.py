@@ -23,6 +23,7 @@ from footfall.scenarios.report.page.charts import (
     Chart,
     Hover,
     Trace,
+    frame,
     slots_of,
     symbols_of,
     thinned,
@@ -195,7 +196,7 @@ def _charts(
                 corrections.append(_line(name, row.t, correction, colour, "deg/s", when=mine))
         yield Chart("map", Axis("x (m)"), Axis("y (m)"), tracks, equal=True, when=walk.when)
         yield Chart("error", _TIME, Axis("heading error (deg)"), errors, when=walk.when)
-        rate = Axis("drift (deg/s)", bounds=_frame(corrections))
+        rate = Axis("drift (deg/s)", bounds=frame(corrections))
         yield Chart("drift", _TIME, rate, corrections, when=walk.when)
         yield Chart("budget", _TIME, Axis("heading error (deg)"), _budget(walk, causes), when=walk.when)
 
@@ -228,13 +229,6 @@ def _hover(walk: _Walked, name: str) -> tuple[Hover, ...]:
             unit, values = _DEGREES[unit], np.degrees(values)
         told.append(Hover(key.replace("_", " "), values, 3, unit))
     return tuple(told)
-
-
-def _frame(lines: Sequence[Trace]) -> tuple[float, float]:
-    """What of y is in sight, so that one jump does not flatten all lines."""
-    low, high = np.percentile(np.concatenate([np.asarray(line.y) for line in lines]), (2.5, 97.5))
-    rim = 0.2 * (high - low) or 1.0
-    return float(low - rim), float(high + rim)
 
 
 def _true_drift(walk: _Walked) -> Trace:

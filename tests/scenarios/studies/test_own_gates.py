@@ -51,7 +51,7 @@ def test_a_defect_is_found_in_twenty_cases(defect, small_block, monkeypatch, tmp
     lines = "\n".join(f'{key} = "{value}"' for key, value in keys.items())
     file = tmp_path / "gates.toml"
     file.write_text(
-        f'[cases]\nscenario = "closed-loop"\nunits = 20\n[[gates]]\nmethod = "now"\n{lines}\n',
+        f'[cases]\nscenario = "straight"\nunits = 20\n[[gates]]\nmethod = "now"\n{lines}\n',
         encoding="utf-8",
     )
     found = gate(file, methods={"now": defect.methods[name], "released": SOUND[name]})
