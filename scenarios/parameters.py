@@ -287,7 +287,8 @@ def _pdr(base: Documents, address: str, path: str, value: Any) -> Documents:
     if path == "detector":
         return replace(base, detector=str(value))
     detector = require_detector(base.detector) if base.detector else PdrParams().detector
-    _require_known(address, [f"pdr.{leaf.name}" for leaf in leaves(PdrParams(detector=detector))])
+    own = [f"pdr.{leaf.name}" for leaf in leaves(PdrParams(detector=detector))]
+    _require_known(address, ["pdr.detector", *own])
     return replace(base, pdr={**base.pdr, path: value})
 
 

@@ -101,7 +101,7 @@ class Row:
     Attributes
     ----------
     subject : name of the person; footfalls : rows of the track
-    stage : of a failure: "walk", "record", "track" or "score"; "worker" where the process that did it ended
+    stage : of a failure: "walk", "record", "track" or "score"; "worker" where what did it came to no end
     walk_sha, recording_sha : of their content, or "" where there is none
     """
 

@@ -297,7 +297,7 @@ def _label(address: str, unit: str) -> str:
     """The last step of an address, without its unit, in words."""
     if address == "imu":
         return "IMU"
-    name = address.rsplit(".", 1)[-1]
+    name = pattern(address).replace("[*]", "").rsplit(".", 1)[-1]
     ending = "_" + unit.replace("/", "_").replace("-", "_").lower()
     return name.removesuffix(ending).replace("_", " ").strip() if unit else name.replace("_", " ")
 

@@ -143,6 +143,17 @@ def do(task: Task, walks: Path | None = None, store: Path | None = None, walk: W
     DiskFullError
         No room is left.
     """
+    try:
+        return _done(task, walks, store, walk)
+    except DiskFullError:
+        raise
+    except Exception as error:  # outside of any trial: nobody's refusal, but no reason to end the others
+        _require_room(error)
+        reason = InputError(f"{type(error).__name__}: {(str(error).splitlines() or [''])[0]}")
+        return replace(lost(task, reason, "worker"), tracebacks="".join(traceback.format_exception(error)))
+
+
+def _done(task: Task, walks: Path | None, store: Path | None, walk: Walk | None) -> Done:
     start = time.perf_counter()
     spent = dict.fromkeys(("walk", "record", "track", "score"), 0.0)
     rows: list[Row] = []

@@ -2,6 +2,7 @@
 
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -84,6 +85,15 @@ def test_a_sweep_and_its_second_start(place, cli):
     assert "nothing is left to do" in err
     told = one_document(out)
     assert (told["rows"], told["failed"], told["name"]) == (16, 0, "small")
+
+
+def test_a_line_tells_now_and_then_how_far_it_is_where_there_is_no_terminal(place, cli, monkeypatch):
+    monkeypatch.setattr("footfall.cli.sweep._EVERY_S", 0.0)
+    code, _, err = cli("sweep small.toml --workers 1 --units 12")
+    assert code == 0
+    assert "small: 0%, navigating, 0 of 12 recordings" in err
+    assert re.search(r"small: 8\d%, navigating, 10 of 12 recordings", err)
+    assert "finishing" not in err
 
 
 def test_failed_rows_are_told_and_strict_is_strict(place, cli):

@@ -138,6 +138,21 @@ def test_failures_are_rows_with_their_stage_and_reason_and_surprises_leave_a_tra
     assert all((row["heading_error_mean_deg"] is None) == bool(row["stage"]) for row in rows)
 
 
+def test_what_breaks_outside_of_any_trial_is_rows_with_a_traceback(place, store, monkeypatch):
+    def broken(trial, folder):
+        raise MemoryError("a walk of 9 GB")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("footfall.scenarios.studies.task.hold", broken)
+        rows = finished(made(place), place / "out")
+    told = {(row["stage"], row["error"]) for row in rows}
+    assert told == {("worker", "MemoryError: a walk of 9 GB")}
+    (file,) = (place / "out" / "errors").iterdir()
+    assert "in broken" in file.read_text()
+    assert all(row["stage"] == "" for row in finished(made(place), place / "out", retry_failed=True))
+    assert not list((place / "out" / "errors").iterdir())
+
+
 def test_a_walk_that_falls_is_rows_while_the_rest_goes_on(place, store):
     pushed = (place / "short.toml").read_text() + "\n[disturbance]\npush_Ns = 30.0\nevery_s = 1.0\n"
     (place / "pushed.toml").write_text(pushed)

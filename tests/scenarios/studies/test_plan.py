@@ -138,6 +138,20 @@ def test_what_it_costs():
     assert headline(plan) == "small: 1 scenario x 2 IMU x 2 tilt gain x 10 units x (pdr + hdr 3): 160 rows"
 
 
+def test_axes_are_called_by_their_last_step_without_its_unit():
+    told = {
+        "scenario.subjects[*]": (["reference", "taller"], "subjects", ""),
+        "scenario.path.elements[kind=straight].length_m": ([900.0, 950.0], "length", "m"),
+        "imu.gyro.angle_random_walk_deg_rt_h": ([1.0], "angle random walk", "deg/rt-h"),
+        "imu": (["nimu"], "IMU", ""),
+        "pdr.detector": (["shoe"], "detector", ""),
+    }
+    plan = plan_of(study(design={"axes": {address: values for address, (values, _, _) in told.items()}}))
+    for address, (values, label, unit) in told.items():
+        axis = plan.axes[address]
+        assert (axis.label, axis.unit, list(axis.values)) == (label, unit, values)
+
+
 def test_a_study_says_what_it_is():
     plan = plan_of(study(design={"axes": AXES}, set={"pdr.bias_s": 20.0}))
     told = document(plan, "footfall sweep small.toml")

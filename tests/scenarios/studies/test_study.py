@@ -115,6 +115,7 @@ def test_a_sheet_and_a_detector_are_chosen_before_what_is_inside_of_them():
         ({"design": {"axes": {"hdr.theta_w_deg_s": [-1]}}}, "hdr.theta_w_deg_s = -1"),
         ({"design": {"axes": {"iez.sigma_velocity": [1.0]}}}, "method 'iez' is not among hdr, pdr"),
         ({"design": {"axes": {"sky.colour": [1]}}}, "unknown area"),
+        ({"design": {"axes": {"pdr.detectr": ["shoe"]}}}, "pdr.detectr: unknown; did you mean pdr.detector?"),
         ({"design": {"axes": {"imu": ["nimoo"]}}}, "'nimoo': neither"),
         ({"design": {"axes": {"scenario.gait.pace_m_s": [9.0]}}}, "gait.pace_m_s = 9.0"),
         ({"design": {"axes": {"scenario.path.elements[7].length_m": [9.0]}}}, "[7] is none of them"),
