@@ -53,6 +53,11 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         raise InputError(f"cannot be written ({error.strerror or error})", target) from None
 
 
+def is_csv(path: str | os.PathLike[str]) -> bool:
+    """Whether a file's name ends so; any other is Parquet."""
+    return Path(path).suffix.lower() == ".csv"
+
+
 def write_table(
     path: str | os.PathLike[str],
     columns: Columns,
@@ -61,7 +66,9 @@ def write_table(
     *,
     smooth: bool = False,
 ) -> None:
-    """Write equally long one-dimensional columns to Parquet.
+    """Write equally long one-dimensional columns to Parquet, or to CSV where the name ends so.
+
+    CSV holds the numbers to their last bit, and neither units nor provenance.
 
     Parameters
     ----------
@@ -75,6 +82,9 @@ def write_table(
     table = pa.table({name: _array(values) for name, values in columns.items()})
     split = [name for name, values in columns.items() if smooth and values.dtype.kind == "f"]
     with replacing(path) as temporary:
+        if is_csv(path):
+            pa_csv.write_csv(table, temporary, pa_csv.WriteOptions(quoting_style="none"))
+            return
         pq.write_table(
             table.replace_schema_metadata(schema_meta),
             temporary,
@@ -98,10 +108,8 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
     InputError
         The file is absent, unreadable, or a column is not numeric.
     """
-    source = Path(path)
-    if not source.is_file():
-        raise InputError("no such file", source)
-    kind = "CSV" if source.suffix.lower() == ".csv" else "Parquet"
+    source = _file(path)
+    kind = "CSV" if is_csv(source) else "Parquet"
     try:
         table = pa_csv.read_csv(source) if kind == "CSV" else pq.ParquetFile(source).read()
         names = table.column_names
@@ -119,20 +127,48 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
 
 
 def read_meta(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """The provenance in a Parquet file, without its columns; empty for a file that Footfall did not write.
+    """The provenance in a Parquet file, without its columns; empty for CSV and for others' files.
 
     Raises
     ------
     InputError
         The file is absent or unreadable.
     """
-    source = Path(path)
-    if not source.is_file():
-        raise InputError("no such file", source)
+    source = _file(path)
+    if is_csv(source):
+        return {}
     try:
         return _meta(source, pq.read_schema(source))
     except (pa.ArrowException, OSError) as error:
         raise _unreadable(source, "Parquet", error) from None
+
+
+def column_names(path: str | os.PathLike[str]) -> list[str]:
+    """What the columns of a Parquet or CSV file are called.
+
+    Raises
+    ------
+    InputError
+        The file is absent or unreadable.
+    """
+    source = _file(path)
+    kind = "CSV" if is_csv(source) else "Parquet"
+    try:
+        if kind == "CSV":
+            with pa_csv.open_csv(source) as opened:
+                return list(opened.schema.names)
+        return list(pq.read_schema(source).names)
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
+        raise _unreadable(source, kind, error) from None
+
+
+def _file(path: str | os.PathLike[str]) -> Path:
+    source = Path(path)
+    if source.is_dir():
+        raise InputError("a folder, expected a file", source)
+    if not source.is_file():
+        raise InputError("no such file", source)
+    return source
 
 
 def numbers(chunks: Sequence[Any]) -> np.ndarray:

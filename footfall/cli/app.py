@@ -18,12 +18,15 @@ from footfall.cli.allan import allan
 from footfall.cli.cache import cache
 from footfall.cli.check import check
 from footfall.cli.export import export
+from footfall.cli.gate import gate
 from footfall.cli.list import list_
 from footfall.cli.parameters import parameters
 from footfall.cli.record import record
 from footfall.cli.render import render
 from footfall.cli.run import run
 from footfall.cli.score import score
+from footfall.cli.sensitivity import sensitivity
+from footfall.cli.sweep import sweep
 from footfall.cli.terminal import perform
 from footfall.cli.track import track
 from footfall.cli.walk import walk
@@ -54,7 +57,23 @@ def _main(
         print(context.get_help())
 
 
-for command in (list_, parameters, run, walk, render, record, track, score, check, export, allan):
+COMMANDS = (
+    list_,
+    parameters,
+    run,
+    walk,
+    render,
+    record,
+    track,
+    score,
+    check,
+    sweep,
+    gate,
+    sensitivity,
+    export,
+    allan,
+)
+for command in COMMANDS:
     app.command(command.__name__.rstrip("_"))(command)
 app.add_typer(cache, name="cache")
 

@@ -17,7 +17,7 @@ from footfall.cli.options import (
     UnitOption,
     WithoutOption,
 )
-from footfall.cli.terminal import ERR, finite, require_output, say
+from footfall.cli.terminal import ERR, TABLES, finite, require_output, say
 from footfall.errors import InputError
 
 
@@ -51,10 +51,13 @@ def record(
     without: WithoutOption = None,
     only: OnlyOption = None,
     indoors: Annotated[
-        float, typer.Option(help="Temperature of the room that the IMU comes from, degC.", callback=finite)
+        float,
+        typer.Option(
+            min=-40, max=85, help="Temperature of the room that the IMU comes from, degC.", callback=finite
+        ),
     ] = 20.0,
     outdoors: Annotated[
-        float, typer.Option(help="Temperature where it is walked, degC.", callback=finite)
+        float, typer.Option(min=-40, max=85, help="Temperature where it is walked, degC.", callback=finite)
     ] = 20.0,
     bias_shift: Annotated[
         float,
@@ -77,16 +80,16 @@ def record(
     from footfall.formats import parse_units, read
     from footfall.models.imu import TemperatureProfile, draw_unit
     from footfall.models.imu.override import overridden
-    from footfall.recording import write_recording
+    from footfall.recording import refuse_recording, write_recording
     from footfall.scenarios.parameters import parsed, sensor
     from footfall.simulate.from_recording import add_errors
     from footfall.simulate.record import record as record_walk
     from footfall.simulate.walk import footfalls_path, read_walk
 
     if walk is not None and from_recording is None:
-        require_output(output, ".parquet", walk, footfalls_path(walk))
+        require_output(output, TABLES, walk, footfalls_path(walk))
     elif from_recording is not None and walk is None:
-        require_output(output, ".parquet", from_recording)
+        require_output(output, TABLES, from_recording)
     else:
         raise InputError("record: expected either a walk or --from-recording with a recording")
     if walk is not None and (format != "auto" or unit or rate is not None):
@@ -102,6 +105,7 @@ def record(
     air = TemperatureProfile.step(indoors, outdoors)
     with ERR.status("recording"):
         if walk is not None:
+            refuse_recording(walk)
             recording = record_walk(
                 read_walk(walk),
                 worn,

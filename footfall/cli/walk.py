@@ -9,7 +9,7 @@ import typer
 from rich.progress import Progress
 
 from footfall.cli.options import NoCacheOption, ScenarioArgument, SetOption
-from footfall.cli.terminal import ERR, finite, require_output, say
+from footfall.cli.terminal import ERR, TABLES, finite, require_output, say
 from footfall.errors import InputError
 
 
@@ -54,6 +54,7 @@ def walk(
 
     from footfall.models.mount import MOUNTS
     from footfall.scenarios.parameters import documents, parsed, require_areas, with_values
+    from footfall.settings import did_you_mean
     from footfall.simulate.cache import cached_walk
     from footfall.simulate.plan import PHYSICS_STEP
     from footfall.simulate.truth import divisor
@@ -61,14 +62,14 @@ def walk(
     from footfall.simulate.walking import walk as walk_anew
 
     if output is not None:
-        require_output(output, ".parquet")
+        require_output(output, TABLES)
     elif not view:
         raise InputError("Missing option '--output' / '-o' (see `footfall walk --help`)")
     require_areas(values := parsed(settings or ()), ("scenario",), "walk")
     plan = with_values(documents(scenario), values).setup().scenario.plan(number - 1)
     if mount is not None:
         if mount not in MOUNTS:
-            raise InputError(f"--mount {mount!r} is unknown, expected one of {', '.join(MOUNTS)}")
+            raise InputError(f"--mount {mount!r} is unknown{did_you_mean(mount, MOUNTS)}")
         plan = replace(plan, mount=MOUNTS[mount])
     if rate is not None:
         divisor(PHYSICS_STEP, rate)
