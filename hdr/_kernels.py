@@ -11,6 +11,8 @@ import numpy as np
 
 from footfall.compiled import kernel
 
+BLOCK = 128  # points whose states stay in the first cache together
+
 
 @kernel(error_model="numpy")
 def filter_twice(raw, interval, tau):  # type: ignore[no-untyped-def]
@@ -27,6 +29,17 @@ def filter_twice(raw, interval, tau):  # type: ignore[no-untyped-def]
 
 
 @kernel(error_model="numpy")
+def _controlled(twice, lag, before, star_before, integrator, i_c, theta_w):  # type: ignore[no-untyped-def]
+    """Eq. 7-10 of one footfall: I, w, w* and the delagged rate."""
+    attenuator = max(0.0, 1.0 - abs(before) / theta_w)
+    sign = 1.0 if before > 0.0 else (-1.0 if before < 0.0 else 0.0)
+    integrator = integrator - attenuator * sign * i_c
+    now = twice + integrator
+    star = now + lag * (now - before)
+    return integrator, now, star, star + lag * (star - star_before)
+
+
+@kernel(error_model="numpy")
 def control(twice, interval, heading, tau, i_c, theta_w):  # type: ignore[no-untyped-def]
     """Headings (n, sets) of HDR Eq. 7-11 for parameter sets that share tau.
 
@@ -39,14 +52,47 @@ def control(twice, interval, heading, tau, i_c, theta_w):  # type: ignore[no-unt
     for i in range(1, n):
         lag = tau / interval[i]
         for j in range(sets):
-            before = w[j]
-            attenuator = max(0.0, 1.0 - abs(before) / theta_w[j])
-            sign = 1.0 if before > 0.0 else (-1.0 if before < 0.0 else 0.0)
-            integrator[j] -= attenuator * sign * i_c[j]
-            now = twice[i] + integrator[j]
-            star = now + lag * (now - before)
-            delagged = star + lag * (star - ws[j])
+            integrator[j], w[j], ws[j], delagged = _controlled(
+                twice[i], lag, w[j], ws[j], integrator[j], i_c[j], theta_w[j]
+            )
             psi[i, j] = psi[i - 1, j] + delagged * interval[i]
-            w[j] = now
-            ws[j] = star
     return psi
+
+
+@kernel(error_model="numpy")
+def heading_errors(rest, causes, weights, interval, true, start, tau, i_c, theta_w):  # type: ignore[no-untyped-def]
+    """Mean and final absolute heading error (points, 2) of HDR, each point with a raw rate of its own.
+
+    The raw rate of footfall i at point j is rest[i] + sum over c of weights[c, j] causes[c, i]; true (n,) are
+    the headings that are judged against, start is the first one of HDR. The rest is as in `control`.
+    Block by block, so that a block's states stay in the first cache.
+    """
+    n, (parts, points) = len(rest), weights.shape
+    out = np.empty((points, 2))
+    for first in range(0, points, BLOCK):
+        size = min(BLOCK, points - first)
+        own = weights[:, first : first + size].copy()
+        t, c, theta = tau[first : first + size], i_c[first : first + size], theta_w[first : first + size]
+        raw, once, twice = np.zeros(size), np.zeros(size), np.zeros(size)
+        integrator, w, ws = np.zeros(size), np.zeros(size), np.zeros(size)
+        psi = np.full(size, start)
+        total = np.full(size, abs(start - true[0]))
+        for i in range(1, n):
+            length = interval[i]
+            raw[:] = rest[i]
+            for k in range(parts):
+                share = causes[k, i]
+                for j in range(size):
+                    raw[j] += own[k, j] * share
+            for j in range(size):
+                once[j] = (raw[j] * length + t[j] * once[j]) / (length + t[j])
+                twice[j] = (once[j] * length + t[j] * twice[j]) / (length + t[j])
+                integrator[j], w[j], ws[j], delagged = _controlled(
+                    twice[j], t[j] / length, w[j], ws[j], integrator[j], c[j], theta[j]
+                )
+                psi[j] += delagged * length
+                total[j] += abs(psi[j] - true[i])
+        for j in range(size):
+            out[first + j, 0] = total[j] / n
+            out[first + j, 1] = abs(psi[j] - true[n - 1])
+    return out

@@ -61,6 +61,22 @@ class HdrParams:
         return speed / self.theta_w
 
 
+NOTHING = HdrParams(tau_s=0.0, i_c=0.0, theta_w=math.inf)  # leaves every heading as it is
+
+
+class HdrSets(NamedTuple):
+    """Many parameter sets as columns, each (s,), as in `HdrParams`."""
+
+    tau_s: np.ndarray
+    i_c: np.ndarray
+    theta_w: np.ndarray
+
+    @classmethod
+    def of(cls, params: Sequence[HdrParams]) -> HdrSets:
+        """The columns of parameter sets."""
+        return cls(*np.array([(one.tau_s, one.i_c, one.theta_w) for one in params], dtype=float).T)
+
+
 class Footfall(NamedTuple):
     """What one update needs: T_i (s) and the raw rate raw_i (rad/s)."""
 
@@ -185,3 +201,38 @@ def headings(walks: Sequence[Footfalls], params: Sequence[HdrParams]) -> list[np
             out[members] = psi.T
         result.append(out)
     return result
+
+
+def heading_errors(
+    rest: np.ndarray,
+    interval: np.ndarray,
+    true: np.ndarray,
+    start: float,
+    sets: HdrSets,
+    causes: np.ndarray | None = None,
+    weights: np.ndarray | None = None,
+) -> np.ndarray:
+    """How far HDR's headings are off the truth, for many raw rates and parameter sets at once, compiled.
+
+    Without causes these are the errors of `headings`; `NOTHING` gives those of dead reckoning.
+
+    Parameters
+    ----------
+    rest, interval, true : (n,) rad/s, s and rad: of each footfall the raw rate, T_i and the true heading
+    start : rad, the first heading
+    sets : s parameter sets
+    causes : (c, n) rad/s, parts of the raw rate that are added to `rest`, each with its own weight
+    weights : (c, s) of each cause under each set
+
+    Returns
+    -------
+    (s, 2) rad, the absolute heading error: mean over the footfalls, and at the last one
+    """
+    if not (interval[1:] > 0).all():
+        raise InputError("hdr: an interval between two footfalls is not positive")
+    if causes is None or weights is None:
+        causes, weights = np.empty((0, len(rest))), np.empty((0, len(sets.tau_s)))
+    arrays = (rest, causes, weights, interval, true)
+    columns = (np.ascontiguousarray(column, dtype=float) for column in sets)
+    made: np.ndarray = _kernels.heading_errors(*map(np.ascontiguousarray, arrays), float(start), *columns)
+    return made
