@@ -24,6 +24,7 @@ from footfall.cli.record import record
 from footfall.cli.render import render
 from footfall.cli.run import run
 from footfall.cli.score import score
+from footfall.cli.sensitivity import sensitivity
 from footfall.cli.terminal import perform
 from footfall.cli.track import track
 from footfall.cli.walk import walk
@@ -54,8 +55,23 @@ def _main(
         print(context.get_help())
 
 
-for command in (list_, parameters, run, walk, render, record, track, score, check, export, allan):
+for command in (
+    list_,
+    parameters,
+    run,
+    walk,
+    render,
+    record,
+    track,
+    score,
+    check,
+    export,
+    allan,
+    sensitivity,
+):
     app.command(command.__name__.rstrip("_"))(command)
+for study in (sensitivity,):
+    app.command(study.__name__)(study)
 app.add_typer(cache, name="cache")
 
 

@@ -33,3 +33,13 @@ def showing() -> Iterator[Callable[[Done], None]]:
             bars.update(tried, completed=now.done, total=now.trials)
 
         yield show
+
+
+@contextmanager
+def counting(label: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar of what is done and how much there is; nothing where there is no terminal."""
+    console = Console(stderr=True)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
+        task = bars.add_task(label, total=None, visible=False)
+        yield lambda done, all_: bars.update(task, completed=done, total=all_, visible=True)

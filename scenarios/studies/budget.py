@@ -57,7 +57,6 @@ class Case:
     causes : effect -> (n,) rad/s
     """
 
-    trial: Trial
     interval: np.ndarray
     rate: np.ndarray
     true: np.ndarray
@@ -91,10 +90,10 @@ def case_of(trial: Trial, walk: Walk) -> Case:
     outcome = perform(replace(trial, setup=alone), walk, keep=True)
     outcome.rows[0].require()
     assert outcome.kept is not None
-    return linear(trial, outcome.kept.tracks["pdr"], walk, outcome.kept.budget)
+    return linear(outcome.kept.tracks["pdr"], walk, outcome.kept.budget)
 
 
-def linear(trial: Trial, track: Track, walk: Walk, budget: DriftBudget) -> Case:
+def linear(track: Track, walk: Walk, budget: DriftBudget) -> Case:
     """A case of dead reckoning's track and the budget of its recording."""
     interval = np.diff(track.t, prepend=track.t[0])
 
@@ -110,7 +109,6 @@ def linear(trial: Trial, track: Track, walk: Walk, budget: DriftBudget) -> Case:
         return np.interp(track.t, edges, np.concatenate([[0.0], np.cumsum(drift * budget.interval)]))
 
     return Case(
-        trial=trial,
         interval=interval,
         rate=rate_of(track.heading),
         true=track.heading - compare(track, walk).heading_error,

@@ -20,6 +20,7 @@ class FactorTable(Strict):
     to: float | None = None
     scale: Literal["linear", "log"] = "linear"
     values: list[float | str | bool | list[float]] | None = None
+    label: str = ""
 
     @model_validator(mode="after")
     def _one_of_both(self) -> FactorTable:
@@ -51,6 +52,8 @@ class Factor:
     low, high : of its range; of a list the first and last number of an element
     log : whether equal ratios count alike, instead of equal differences
     values : where it is a list: these and no others
+    label : what it is called in tables and figures; its address without one
+    unit : of its values, or ""
     """
 
     address: str
@@ -58,6 +61,13 @@ class Factor:
     high: float
     log: bool = False
     values: tuple[Any, ...] | None = None
+    label: str = ""
+    unit: str = ""
+
+    @property
+    def name(self) -> str:
+        """For people."""
+        return self.label or self.address
 
     def at(self, share: np.ndarray) -> np.ndarray:
         """Its values (n,) at shares (n,) of its range, from 0 to 1; of a list an object array."""
@@ -79,9 +89,10 @@ class Factor:
 
     def as_dict(self) -> dict[str, Any]:
         """For a document."""
+        told = {"label": self.name, "unit": self.unit}
         if self.values is not None:
-            return {"values": list(self.values)}
-        return {"from": self.low, "to": self.high, "scale": "log" if self.log else "linear"}
+            return {**told, "values": list(self.values)}
+        return {**told, "from": self.low, "to": self.high, "scale": "log" if self.log else "linear"}
 
 
 def factors_of(tables: Mapping[str, FactorTable]) -> tuple[Factor, ...]:
@@ -90,11 +101,11 @@ def factors_of(tables: Mapping[str, FactorTable]) -> tuple[Factor, ...]:
     for address, table in tables.items():
         if table.values is not None:
             last = float(len(table.values) - 1)
-            found.append(Factor(address, 0.0, last, values=tuple(table.values)))
+            found.append(Factor(address, 0.0, last, values=tuple(table.values), label=table.label))
         else:
             assert table.from_ is not None
             assert table.to is not None
-            found.append(Factor(address, table.from_, table.to, table.scale == "log"))
+            found.append(Factor(address, table.from_, table.to, table.scale == "log", label=table.label))
     return tuple(found)
 
 

@@ -57,6 +57,6 @@ def test_what_is_no_range_is_refused(table, reason):
 
 
 def test_what_a_range_says_to_a_document():
-    even, listed = factors(a={"from": 2, "to": 6}, c={"values": [50, "x"]})
-    assert even.as_dict() == {"from": 2, "to": 6, "scale": "linear"}
-    assert listed.as_dict() == {"values": [50, "x"]}
+    even, listed = factors(a={"from": 2, "to": 6}, c={"values": [50, "x"], "label": "which"})
+    assert even.as_dict() == {"label": "a", "unit": "", "from": 2, "to": 6, "scale": "linear"}
+    assert listed.as_dict() == {"label": "which", "unit": "", "values": [50, "x"]}

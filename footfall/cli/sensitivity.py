@@ -1,0 +1,79 @@
+"""`footfall sensitivity`: which parameters an error depends on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from footfall.cli.options import JsonOption
+from footfall.cli.terminal import ERR, OUT, print_json, say
+
+
+def sensitivity(
+    study: Annotated[
+        str | None,
+        typer.Argument(
+            help="A study that comes with Footfall, or your TOML file; if left out, those that come with it."
+        ),
+    ] = None,
+    fidelity: Annotated[
+        str | None,
+        typer.Option(help="full: the whole chain; budget: by the drift budget; the study says if left out."),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes; one a core if left out.", show_default=False)
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the results; out/STUDY if left out.", show_default=False)
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Tell which parameters a method's error depends on, alone and together (Morris, Sobol).
+
+    The folder gets sensitivity.json, points.parquet and the figures (PNG). Needs footfall[study].
+    """
+    import sys
+
+    from footfall.scenarios.report.progress import counting, showing
+    from footfall.scenarios.report.results import results_folder
+    from footfall.scenarios.report.sensitivity import (
+        check_report,
+        sensitivity_document,
+        sensitivity_report,
+        write_sensitivity,
+    )
+    from footfall.scenarios.report.tables import new_table
+    from footfall.scenarios.studies.extra import needed
+    from footfall.scenarios.studies.sensitivity import Watch, perform_study
+    from footfall.scenarios.studies.sensitivity_file import read_study, stock_studies
+
+    if study is None:
+        table = new_table("study", "question")
+        for name in stock_studies():
+            table.add_row(name, read_study(name).file.description)
+        OUT.print(table)
+        return
+    needed("SALib.sample.sobol")
+    asked = read_study(study, {} if fidelity is None else {"fidelity": fidelity})
+    folder = out or Path("out") / asked.name
+    with results_folder(folder):
+        with showing() as trials, counting("units heard") as heard:
+            watch = Watch(
+                workers=workers,
+                store=folder / "footfalls",
+                on_trials=trials,
+                on_cases=heard,
+                on_check=lambda check: ERR.print(check_report(asked, check)),
+            )
+            found = perform_study(asked, watch)
+        document = sensitivity_document(found, " ".join(["footfall", *sys.argv[1:]]))
+        with ERR.status("writing files and figures"):
+            write_sensitivity(found, document, folder)
+    if as_json:
+        print_json(document)
+    else:
+        for part in sensitivity_report(found):
+            OUT.print(part)
+    say(f"Figures, points and indices are in {folder}")

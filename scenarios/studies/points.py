@@ -1,0 +1,218 @@
+"""Scores of a method at many points of its and its sensor's parameters, by the full chain.
+
+What differs in the method's own parameters alone is recorded once: such points are many methods of one trial.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from footfall.errors import InputError
+from footfall.hdr.method import Method
+from footfall.scenarios.evaluate import cases
+from footfall.scenarios.execute import Progress, execute
+from footfall.scenarios.judge.score import Score
+from footfall.scenarios.parameters import Documents, with_values
+from footfall.scenarios.studies.factors import Factor
+from footfall.scenarios.trial import Setup, Trial
+from footfall.settings import did_you_mean
+from footfall.toml import Strict
+
+Over = Literal["median", "mean", "p90"]
+
+TOGETHER = 50  # methods of one trial: so many tracks of a recording before the next progress
+_FLOORS = {"_deg": 0.01, "_m": 0.01, "_pct": 0.01}  # less than that is no error, and has a logarithm
+
+
+class CasesTable(Strict):
+    """Who wears what on which walk, the same at every point: as of `footfall.scenarios.evaluate.cases`."""
+
+    walks: Annotated[int, Field(ge=1)] | None = None
+    units: Annotated[int, Field(ge=1)] = 20
+    seed: Annotated[int, Field(ge=0)] | None = None
+    crossed: bool = False
+
+    def deal(self, setup: Setup) -> list[Trial]:
+        """The trials of a setup."""
+        return cases(setup, units=self.units, walks=self.walks, seed=self.seed, crossed=self.crossed)
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """Errors (p, c) of p points in c cases, infinite where there is none, and why: reason -> how often."""
+
+    errors: np.ndarray
+    failures: Mapping[str, int]
+
+
+def require_metric(name: str) -> str:
+    """A figure of `Score` by its name.
+
+    Raises
+    ------
+    InputError
+        There is none of that name.
+    """
+    if name not in Score.__dataclass_fields__:
+        raise InputError(f"metric = {name!r}: unknown{did_you_mean(name, Score.__dataclass_fields__)}")
+    return name
+
+
+def require_allowed(base: Documents, factors: Sequence[Factor]) -> None:
+    """Refuse a factor whose address is unknown, or one end of which the models refuse.
+
+    Raises
+    ------
+    InputError
+        What a file with that value would get.
+    """
+    for factor in factors:
+        for value in factor.ends:
+            with_values(base, {factor.address: value}).setup()
+
+
+def evaluate_points(
+    base: Documents,
+    points: Sequence[Mapping[str, Any]],
+    deal: Callable[[Setup], Sequence[Trial]],
+    metric: str,
+    *,
+    which: np.ndarray | None = None,
+    workers: int | None = None,
+    store: Path | None = None,
+    on_progress: Callable[[Progress], None] | None = None,
+) -> Evaluated:
+    """The full chain at every point.
+
+    Parameters
+    ----------
+    base : with the one method that is judged
+    points : address -> value
+    deal : the cases of a setup, in the same order for each
+    metric : of `Score`; its size counts
+    which : (p,) the one case of each point; all where None
+    workers, store, on_progress : as of `execute`
+    """
+    (method,) = base.methods
+    shared = base.setup().scenario
+    own = [_own(method, point) for point in points]
+    groups: dict[str, list[int]] = {}
+    for index, (point, values) in enumerate(zip(points, own, strict=True)):
+        rest = {address: value for address, value in point.items() if _name(method, address) not in values}
+        groups.setdefault(json.dumps([rest, _case(which, index)], sort_keys=True), []).append(index)
+    trials: list[Trial] = []
+    told: list[tuple[int, dict[str, list[int]]]] = []  # of each trial: its case, and points by method's name
+    for key, members in groups.items():
+        rest, chosen = json.loads(key)
+        setup = with_values(base, rest).setup()
+        if not any(address.startswith("scenario.") for address in rest):
+            setup = replace(setup, scenario=shared)  # whose plan is then hashed once
+        for methods, owners in _methods(method, own, members):
+            dealt = list(enumerate(deal(replace(setup, methods=methods))))
+            for case, trial in dealt if chosen is None else [dealt[chosen]]:
+                trials.append(trial)
+                told.append((case, owners))
+    count = len(deal(base.setup())) if which is None else 1
+    errors = np.full((len(points), count), np.inf)
+    failures: Counter[str] = Counter()
+    done = execute(trials, workers=workers, store=store, on_progress=on_progress)
+    for outcome, (case, owners) in zip(done, told, strict=True):
+        for row in outcome.rows:
+            members = owners[row.method]
+            if row.score is None:
+                failures[row.error] += len(members)
+            else:
+                errors[members, case if which is None else 0] = abs(getattr(row.score, metric))
+    return Evaluated(errors, dict(failures))
+
+
+def _name(method: Method, address: str) -> str:
+    """A parameter's name in the method, or "" for one of another area."""
+    return address.removeprefix(f"{method.name}.") if address.startswith(f"{method.name}.") else ""
+
+
+def _own(method: Method, point: Mapping[str, Any]) -> dict[str, Any]:
+    """The values of a point that the method itself takes; dead reckoning takes none."""
+    if method.params is None:
+        return {}
+    named = {_name(method, address): value for address, value in point.items()}
+    return {name: value for name, value in named.items() if name}
+
+
+def _case(which: np.ndarray | None, index: int) -> int | None:
+    return None if which is None else int(which[index])
+
+
+def _methods(
+    method: Method, own: Sequence[Mapping[str, Any]], members: Sequence[int]
+) -> list[tuple[tuple[Method, ...], dict[str, list[int]]]]:
+    """The different methods of points that share all else, in parts, each with points by its name."""
+    by_params: dict[str, list[int]] = {}
+    for index in members:
+        by_params.setdefault(json.dumps(own[index], sort_keys=True), []).append(index)
+    parts = []
+    different = list(by_params.values())
+    for first in range(0, len(different), TOGETHER):
+        owners = {f"{method.name}-{same[0]}": same for same in different[first : first + TOGETHER]}
+        made = tuple(method.with_params(own[same[0]]).renamed(name) for name, same in owners.items())
+        parts.append((made, owners))
+    return parts
+
+
+def over_cases(errors: np.ndarray, over: Over) -> np.ndarray:
+    """Median, mean or 90th percentile (p,) of errors (p, c); infinite ones rank last."""
+    if over == "mean":
+        return np.asarray(errors.mean(axis=1))
+    place = {"median": 0.5, "p90": 0.9}[over] * (errors.shape[1] - 1)
+    low = int(place)
+    ranked = np.sort(errors, axis=1)
+    if place == low:
+        return np.asarray(ranked[:, low])
+    with np.errstate(invalid="ignore"):  # of two infinite ones
+        between = ranked[:, low] + (place - low) * (ranked[:, low + 1] - ranked[:, low])
+    return np.where(np.isinf(ranked[:, low + 1]), np.inf, between)
+
+
+def floored(values: np.ndarray, metric: str) -> np.ndarray:
+    """Values of a metric that are at least so large that a ratio of two means something."""
+    floor = next((size for ending, size in _FLOORS.items() if metric.endswith(ending)), 0.0)
+    return np.maximum(values, floor)
+
+
+def require_finite(
+    values: np.ndarray, shares: np.ndarray, factors: Sequence[Factor], failures: Mapping[str, int]
+) -> None:
+    """Refuse points whose value is infinite: too many of their cases failed.
+
+    Parameters
+    ----------
+    values, shares : (p,) and (p, factors)
+
+    Raises
+    ------
+    InputError
+        How many, in which corner of the parameters, and the commonest reason.
+    """
+    bad = ~np.isfinite(values)
+    if not bad.any():
+        return
+    where = []
+    for i, factor in enumerate(factors):
+        low, high = shares[bad, i].min(), shares[bad, i].max()
+        if high - low <= 0.5 and len(factor.ends) == 2:
+            ends = factor.at(np.array([low, high])).tolist()
+            where.append(f"{factor.address} from {ends[0]:.4g} to {ends[1]:.4g}")
+    corner = f", all with {' and '.join(where)}" if where else ""
+    reason = max(failures, key=lambda text: failures[text]) if failures else "no reason was told"
+    raise InputError(
+        f"{int(bad.sum())} of {len(values)} points have no score{corner}: too many of their cases failed "
+        f"({reason})"
+    )

@@ -1,0 +1,162 @@
+"""Sensitivity studies: their file, both fidelities, and what they print and write."""
+
+import json
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+pytest.importorskip("SALib")
+
+from footfall.errors import InputError
+from footfall.scenarios.studies import sensitivity as studied
+from footfall.scenarios.studies.check import Check
+from footfall.scenarios.studies.sensitivity import Watch, perform_study
+from footfall.scenarios.studies.sensitivity_file import build_study, read_study, stock_studies
+
+G = "imu.gyro.g_sensitivity_sigma_deg_s_g"
+STUDY = f"""
+description = "what costs"
+scenario = "short.toml"
+method = "hdr"
+fidelity = "budget"
+[cases]
+walks = 1
+units = 3
+[parameters]
+"{G}" = {{ from = 0.015, to = 0.45, scale = "log", label = "g-sensitivity" }}
+"hdr.theta_w_deg_s" = {{ from = 0.2, to = 1.0 }}
+[morris]
+trajectories = 4
+[sobol]
+samples = 16
+at_most = 32
+"""
+
+
+@pytest.fixture
+def file(here):
+    (here / "costs.toml").write_text(STUDY)
+    return here / "costs.toml"
+
+
+def changed(file, before, after):
+    text = file.read_text()
+    assert before in text
+    file.write_text(text.replace(before, after))
+    return str(file)
+
+
+def test_a_study_from_its_file_to_its_folder(file, cli, here):
+    code, printed, told = cli("sensitivity costs.toml --workers 1 --json")
+    assert code == 0, told
+    found = json.loads(printed)
+    assert found == json.loads((here / "out/costs/sensitivity.json").read_text())
+    assert (found["name"], found["scenario"], found["method"]) == ("costs", "short", "hdr")
+    assert found["parameters"][G] == {
+        "label": "g-sensitivity", "unit": "deg/s/g", "from": 0.015, "to": 0.45, "scale": "log"
+    }  # fmt: skip
+    assert found["cases"] == [[3, 1000], [3, 1001], [3, 1002]]
+    assert set(found["morris"]) == {G, "hdr.theta_w_deg_s"}
+    assert [step["samples"] for step in found["sobol"]["steps"]] == [16, 32]
+    assert len(found["check"]["full"]) == 8
+    assert "The budget beside the full chain" in told
+    points = pq.read_table(here / "out/costs/points.parquet").to_pydict()
+    assert points["design"] == ["morris"] * 12 + ["sobol"] * 128
+    assert min(points[G]) >= 0.015
+    for name in ("indices.png", "effects.png"):
+        assert (here / "out/costs" / name).read_bytes()[:4] == b"\x89PNG"
+
+    code, printed, told = cli("sensitivity costs.toml --workers 1")
+    assert code == 0
+    for word in ("g-sensitivity", "Morris", "Sobol", "interplay", "not converged", "N = 32, 128 points"):
+        assert word in printed, word
+
+
+def test_both_fidelities_agree_on_dead_reckoning(file):
+    """In the mean and in the order of the points; the sheet's own values are met to the digit."""
+    text = file.read_text().replace('"hdr"', '"pdr"').replace("hdr.theta_w_deg_s", "imu.gyro.flicker_deg_h")
+    file.write_text(text.replace("from = 0.2, to = 1.0", "from = 20, to = 200").replace("= 16", "= 32"))
+    budget = perform_study(read_study(str(file)), Watch(workers=1))
+    assert budget.check.mean_off < 0.1
+    full = perform_study(read_study(str(file), {"fidelity": "full", "sobol": None}), Watch(workers=1))
+    assert full.check is None
+    assert full.nominal == pytest.approx(budget.nominal, rel=1e-6)
+    ratio = np.log(budget.points[0].scores / full.points[0].scores)
+    assert np.abs(ratio).mean() < 0.15
+    assert np.corrcoef(np.log([budget.points[0].scores, full.points[0].scores]))[0, 1] > 0.9
+
+
+def test_the_unit_as_a_factor(file):
+    study = read_study(str(file), {"units_as_factor": True, "morris": None})
+    assert study.factors[-1].values == (1000, 1001, 1002)
+    found = perform_study(study, Watch(workers=1))
+    rows = list(found.rows())
+    assert {row["unit"] for row in rows} == {1000, 1001, 1002}
+    assert len(found.sobol.total) == 3
+
+
+def test_a_budget_that_is_too_far_off_is_refused_after_it_was_shown(file, monkeypatch):
+    wrong = lambda study, watch: ([], lambda shares: np.full(len(shares), 1e3))  # noqa: E731
+    monkeypatch.setattr(studied, "_budget", wrong)
+    seen = []
+    with pytest.raises(InputError, match=r'in the mean over 8 points, more than 15 %: use fidelity = "full"'):
+        perform_study(read_study(str(file)), Watch(workers=1, on_check=seen.append))
+    assert seen[0].mean_off > 0.15
+
+
+def test_the_check_is_of_sizes():
+    check = Check(np.zeros((2, 1)), np.array([2.0, 4.0]), np.array([2.4, 3.2]))
+    np.testing.assert_allclose(check.off, [0.2, -0.2])
+    assert check.mean_off == pytest.approx(0.2)
+    with pytest.raises(InputError, match="20 %"):
+        check.require()
+    Check(np.zeros((2, 1)), np.array([2.0, 4.0]), np.array([2.2, 3.6])).require()
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "reason"),
+    [
+        ("samples = 16", "samples = 20", "power of 2"),
+        ('"hdr"', '"hrd"', "hrd"),
+        ('method = "hdr"', 'method = "hdr"\nmetric = "error"', "metric"),
+        ("hdr.theta_w_deg_s", "hdr.theta", "hdr.theta: unknown; did you mean theta_w_deg_s"),
+        ("from = 0.2", "from = -0.2", "theta_w_deg_s = -0.2"),
+        ("hdr.theta_w_deg_s", "imu.gyro.bandwidth_hz", "not proportional"),
+        ("from = 0.2, to = 1.0", "values = [0.2, 0.3]", "no lists"),
+        ("[morris]", "[moris]", "moris"),
+        ("short.toml", "shrt.toml", "shrt"),
+        ('fidelity = "budget"', 'fidelity = "fast"', "fidelity"),
+        ('method = "hdr"', 'method = "iez"', "'hdr' is not among iez"),
+    ],
+)
+def test_what_is_wrong_in_a_file_is_told_in_one_sentence(file, cli, here, before, after, reason):
+    changed(file, before, after)
+    code, printed, told = cli("sensitivity costs.toml --workers 1")
+    assert code == 2
+    assert printed == ""
+    assert reason in told
+    assert told.count("\n") == 1
+    assert not (here / "out").exists()
+
+
+def test_a_study_asks_something_of_several_parameters(file):
+    text = file.read_text()
+    with pytest.raises(InputError, match=r"neither \[morris\] nor \[sobol\]"):
+        build_study("x", {"scenario": "short.toml", "parameters": {}}, "x")
+    file.write_text(text[: text.index('"hdr.theta')] + text[text.index("[morris]") :])
+    with pytest.raises(InputError, match="at least 2"):
+        read_study(str(file))
+
+
+def test_without_a_name_the_stock_studies_are_listed(cli):
+    code, printed, _ = cli("sensitivity")
+    assert code == 0
+    for name in stock_studies():
+        assert name in printed
+
+
+def test_no_such_study(cli):
+    code, _, told = cli("sensitivity nothing")
+    assert code == 2
+    assert "nothing: neither a study that comes with Footfall" in told
