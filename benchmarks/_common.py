@@ -17,6 +17,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from footfall.models.policy import stock_policy
 from footfall.models.route import Route
+from footfall.scenarios.evaluate import NOISE_STEP
 from footfall.scenarios.execute import execute, worker_pool
 from footfall.scenarios.judge.papers import UNCORRECTED_AVERAGE_RANGE, UNCORRECTED_FINAL_RANGE
 from footfall.scenarios.trial import Outcome, Row, Setup, Trial
@@ -24,8 +25,6 @@ from footfall.simulate.plan import versions
 
 J = TypeVar("J")
 R = TypeVar("R")
-
-NOISE_STEP = 100_000  # between the seeds of one unit's noises: more than there are units
 
 # A file is as wide as the widest table.
 out = Console(soft_wrap=True, width=None if sys.stdout.isatty() else 150)

@@ -169,8 +169,9 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     """The end of a message about an unknown name: the nearest known ones, or all where none is near."""
     every = list(known)
     near = difflib.get_close_matches(name, every, n=1)
+    near = near or [one for one in every if len(name) > 2 and name in one]
     # theta_w for theta_w_deg_s, count for directions.count
-    near = [one for one in every if one.startswith(name) or one.endswith(f".{name}")] or near
+    near = [one for one in every if name and (one.startswith(name) or one.endswith(f".{name}"))] or near
     if near:
         return f"; did you mean {' or '.join(near)}?"
     return f"; expected one of {', '.join(every)}" if every else "; there is nothing to set"

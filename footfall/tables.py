@@ -98,9 +98,7 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
     InputError
         The file is absent, unreadable, or a column is not numeric.
     """
-    source = Path(path)
-    if not source.is_file():
-        raise InputError("no such file", source)
+    source = _file(path)
     kind = "CSV" if source.suffix.lower() == ".csv" else "Parquet"
     try:
         table = pa_csv.read_csv(source) if kind == "CSV" else pq.ParquetFile(source).read()
@@ -126,13 +124,39 @@ def read_meta(path: str | os.PathLike[str]) -> dict[str, Any]:
     InputError
         The file is absent or unreadable.
     """
-    source = Path(path)
-    if not source.is_file():
-        raise InputError("no such file", source)
+    source = _file(path)
     try:
         return _meta(source, pq.read_schema(source))
     except (pa.ArrowException, OSError) as error:
         raise _unreadable(source, "Parquet", error) from None
+
+
+def column_names(path: str | os.PathLike[str]) -> list[str]:
+    """What the columns of a Parquet or CSV file are called.
+
+    Raises
+    ------
+    InputError
+        The file is absent or unreadable.
+    """
+    source = _file(path)
+    kind = "CSV" if source.suffix.lower() == ".csv" else "Parquet"
+    try:
+        if kind == "CSV":
+            with pa_csv.open_csv(source) as opened:
+                return list(opened.schema.names)
+        return list(pq.read_schema(source).names)
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
+        raise _unreadable(source, kind, error) from None
+
+
+def _file(path: str | os.PathLike[str]) -> Path:
+    source = Path(path)
+    if source.is_dir():
+        raise InputError("a folder, expected a file", source)
+    if not source.is_file():
+        raise InputError("no such file", source)
+    return source
 
 
 def numbers(chunks: Sequence[Any]) -> np.ndarray:

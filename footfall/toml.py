@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
+import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from footfall.errors import InputError
+from footfall.settings import did_you_mean
 
 
 class Strict(BaseModel):
@@ -41,6 +43,15 @@ def parse_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
         raise InputError(f"not valid TOML ({error})", source) from None
 
 
+def no_such_file(what: str, name: str, stock: Iterable[str]) -> InputError:
+    """The error about a name that is neither one of `stock` nor a file's; `what` it should be of."""
+    if Path(name).is_dir():
+        return InputError("a folder, expected a TOML file", f"{what} {name!r}")
+    return InputError(
+        f"neither a stock {what} nor a TOML file that exists{did_you_mean(name, stock)}", f"{what} {name!r}"
+    )
+
+
 def checked(table: Mapping[str, Any], model: type[Model], source: str) -> Model:
     """`table`, which came from `source`, as a `model`.
 
@@ -52,10 +63,12 @@ def checked(table: Mapping[str, Any], model: type[Model], source: str) -> Model:
     try:
         return model.model_validate(table)
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(_written(table, first["loc"]))
+        # A key that nobody knows explains one that is missing, so it comes first.
+        first = min(error.errors(), key=lambda one: one["type"] != "extra_forbidden")
+        key = _key(table, first["loc"])
         if first["type"] == "extra_forbidden":
-            raise InputError(f"unknown key {key!r} = {first['input']!r}", source) from None
+            told = f"unknown key {key!r} = {first['input']!r}{_meant(model, table, first['loc'])}"
+            raise InputError(told, source) from None
         if first["type"] == "missing":
             raise InputError(f"key {key!r} is missing", source) from None
         # A whole table is no help; the message of a model's own check says what is wrong with it.
@@ -64,7 +77,30 @@ def checked(table: Mapping[str, Any], model: type[Model], source: str) -> Model:
         raise InputError(f"{key}{value}: {reason}" if key else reason, source) from None
 
 
-def _written(content: object, location: Sequence[int | str]) -> Iterator[str]:
+def _key(table: Mapping[str, Any], location: Sequence[int | str]) -> str:
+    """A key in words: `path.elements no. 2, radius_m`, elements of a list counted from 1."""
+    told, dot = "", ""
+    for part in _written(table, location):
+        told += f" no. {part + 1}" if isinstance(part, int) else f"{dot}{part}"
+        dot = ", " if isinstance(part, int) else "."
+    return told
+
+
+def _meant(model: type[BaseModel], table: Mapping[str, Any], location: Sequence[int | str]) -> str:
+    """The end of a message about an unknown key: which one of its table it may have been."""
+    # Late: what addresses are is told on top of this module.
+    from footfall.addresses import keys
+
+    *above, unknown = ("[*]" if isinstance(part, int) else f".{part}" for part in _written(table, location))
+    head, known = "".join(above), []
+    for key in keys(model):
+        address = "." + re.sub(r"\[[^\]]*\]", "[*]", key.address)
+        if address.startswith(f"{head}."):
+            known.append(re.split(r"[.\[]", address[len(head) + 1 :])[0])
+    return did_you_mean(unknown.lstrip("."), dict.fromkeys(known))
+
+
+def _written(content: object, location: Sequence[int | str]) -> Iterator[int | str]:
     """The parts of a key as they stand in the file: pydantic puts the tags of alternatives between them."""
     for i, part in enumerate(location):
         listed = isinstance(content, list) and isinstance(part, int)
@@ -72,4 +108,4 @@ def _written(content: object, location: Sequence[int | str]) -> Iterator[str]:
             content = content[part]  # type: ignore[index]
         elif not isinstance(content, dict) or i < len(location) - 1:  # or else a key that is missing
             continue
-        yield str(part)
+        yield part

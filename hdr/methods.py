@@ -32,6 +32,7 @@ from footfall.pdr.filter.ins import FilterSettings
 from footfall.pdr.reckoning import PdrParams, StartPose
 from footfall.pdr.track import Track
 from footfall.recording import Recording
+from footfall.settings import did_you_mean
 
 
 def _learned(reckoning: Reckoning, own: DirectionParams) -> DirectionParams:
@@ -263,8 +264,8 @@ def _require_findable(use: str) -> None:
         return
     if use.endswith(".py"):
         raise InputError(f"say which of its names: {use}:NAME", use)
-    known = ", ".join([*METHODS, *entry_point_names()])
-    raise InputError(f"method {use!r} is unknown, expected one of {known}, {FORMS}")
+    known = [*METHODS, *entry_point_names()]
+    raise InputError(f"method {use!r} is unknown{did_you_mean(use, [*known, FORMS])}")
 
 
 def told_directions(method: str | Method, directions: int | None, reference: float | None) -> DirectionParams:

@@ -41,6 +41,13 @@ def rotate(q, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @kernel()
+def vertical(q):  # type: ignore[no-untyped-def]
+    """The vertical in the body's axes: third row of R(q)."""
+    w, x, y, z = q
+    return 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
+
+
+@kernel()
 def advance(q, v, p, gyro, accel, dt):  # type: ignore[no-untyped-def]
     """One sample of the pose-increment consumer: v+ = v + R(q Exp(dth/2)) dv + g T, and so on."""
     half = exponential(0.5 * dt * gyro[0], 0.5 * dt * gyro[1], 0.5 * dt * gyro[2])
@@ -77,9 +84,10 @@ def reckon(t, gyro, accel, bias, q0, resets, tilt_gain):  # type: ignore[no-unty
 
     bias : (3,) rad/s, is taken off the gyro
     resets[0] is the sample that the pose (q0, origin) belongs to.
+    Third come the sums of `footfall.pdr.strides.Sums`, of which no pose depends.
     """
     m = len(resets)
-    quaternion, position = np.empty((m, 4)), np.zeros((m, 3))
+    quaternion, position, sums = np.empty((m, 4)), np.zeros((m, 3)), np.zeros((m, 30))
     q = (q0[0], q0[1], q0[2], q0[3])
     for i in range(4):  # to assign the slice would compile numba's words on shapes that differ
         quaternion[0, i] = q[i]
@@ -87,9 +95,19 @@ def reckon(t, gyro, accel, bias, q0, resets, tilt_gain):  # type: ignore[no-unty
     for j in range(1, m):
         first, last = resets[j - 1], resets[j]
         v, p = zero, zero
+        up = vertical(q)
         for k in range(first + 1, last + 1):
             rate = (gyro[k, 0] - bias[0], gyro[k, 1] - bias[1], gyro[k, 2] - bias[2])
-            q, v, p = advance(q, v, p, rate, accel[k], t[k] - t[k - 1])
+            dt = t[k] - t[k - 1]
+            q, v, p = advance(q, v, p, rate, accel[k], dt)
+            below, up = up, vertical(q)
+            for i in range(3):
+                c = 0.5 * dt * (below[i] + up[i])  # the vertical at the middle of the sample, nearly
+                sums[j, i] += c
+                for a in range(3):
+                    sums[j, 3 + 3 * i + a] += c * accel[k, a]
+                    sums[j, 12 + 3 * i + a] += c * rate[a]
+                    sums[j, 21 + 3 * i + a] += c * accel[k, a] * accel[k, a]
         duration = t[last] - t[first]
         for i in range(3):
             position[j, i] = position[j - 1, i] + p[i] - 0.5 * duration * v[i]
@@ -97,4 +115,4 @@ def reckon(t, gyro, accel, bias, q0, resets, tilt_gain):  # type: ignore[no-unty
         q = multiply(exponential(tilt * v[1], -tilt * v[0], 0.0), q)
         for i in range(4):
             quaternion[j, i] = q[i]
-    return quaternion, position
+    return quaternion, position, sums

@@ -61,21 +61,27 @@ def reckon(
     q0: np.ndarray,
     resets: np.ndarray,
     tilt_gain: float,
-) -> tuple[np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Twin of `_kernels.reckon`."""
     zero = np.zeros(3)
     state, half = Strapdown(q0, zero, zero), half_turns(t, gyro - bias)
-    quaternion, position = [state.quaternion], [zero]
+    quaternion, position, sums = [state.quaternion], [zero], [np.zeros(30)]
     for first, last in pairwise(resets):
-        state.velocity, state.position = zero, zero
+        state.velocity, state.position, total = zero, zero, np.zeros((10, 3))
         for k in range(first + 1, last + 1):
-            state.take(half[k], accel[k], t[k] - t[k - 1])
+            before, dt = state.attitude[2], t[k] - t[k - 1]
+            state.take(half[k], accel[k], dt)
+            up = dt * (before + state.attitude[2]) / 2
+            total += np.vstack(
+                [up, np.outer(up, accel[k]), np.outer(up, gyro[k] - bias), np.outer(up, accel[k] ** 2)]
+            )
+        sums.append(total.ravel())
         duration = t[last] - t[first]
         position.append(position[-1] + state.position - state.velocity * duration / 2)
         error = np.cross([0.0, 0.0, 1.0], -state.velocity) / (GRAVITY * duration)
         state.attitude = Rotation.from_rotvec(tilt_gain * error).as_matrix() @ state.attitude
         quaternion.append(state.quaternion)
-    return np.array(quaternion), np.array(position)
+    return np.array(quaternion), np.array(position), np.array(sums)
 
 
 def threshold(t: np.ndarray, gyro: np.ndarray, accel: np.ndarray, detector: ThresholdDetector) -> np.ndarray:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from footfall.pdr.strides import Strides
+
 
 @dataclass(frozen=True)
 class Footfalls:
@@ -21,6 +23,7 @@ class Footfalls:
     rate : (n,) rad/s, raw_i of HDR Eq. 2: heading increment from stance to stance over T_i
     position : (n, 3) m, dead-reckoned
     heading : (n,) rad, unwrapped, of the IMU's x axis
+    strides : what the samples say of loads, temperature and rests; None where no samples were reckoned
     """
 
     t: np.ndarray
@@ -29,6 +32,7 @@ class Footfalls:
     rate: np.ndarray
     position: np.ndarray
     heading: np.ndarray
+    strides: Strides | None = None
 
     def __len__(self) -> int:
         return len(self.t)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.rest import Rest, static_bias
 from footfall.pdr.stance import Detector, StanceParams, Stances, ThresholdDetector, compact, find_stances
 from footfall.pdr.strapdown import ORIGIN
+from footfall.pdr.strides import Strides, Sums, integrals, strides_of
 from footfall.recording import Recording
 from footfall.settings import require, setting
 
@@ -163,7 +164,7 @@ def dead_reckon(
     params, start = params or PdrParams(), start or StartPose()
     found = found or detect(recording, params)
     rest, stances, resets = found.rest, found.stances, found.stances.resets
-    quaternion, position = _kernels.reckon(
+    quaternion, position, sums = _kernels.reckon(
         compact(recording.t),
         compact(recording.gyro),
         compact(recording.accel),
@@ -172,11 +173,15 @@ def dead_reckon(
         resets,
         params.tilt_gain,
     )
-    t = recording.t[resets[stances.footfalls]]
-    return placed(t, quaternion[stances.footfalls], position[stances.footfalls], start)
+    made = Sums(recording.t[resets], sums, integrals(recording.t, recording.temperature, resets))
+    strides = strides_of(made, stances.footfalls, rest.force, start_temperature(recording, rest))
+    at = stances.footfalls
+    return placed(made.t[at], quaternion[at], position[at], start, strides)
 
 
-def placed(t: np.ndarray, quaternion: np.ndarray, position: np.ndarray, start: StartPose) -> Footfalls:
+def placed(
+    t: np.ndarray, quaternion: np.ndarray, position: np.ndarray, start: StartPose, strides: Strides
+) -> Footfalls:
     """Footfalls from what was reckoned from the rest at heading 0 and the origin: put where the rest was.
 
     Stamps (n,), attitudes (n, 4) and positions (n, 3). Between the rest and row 0 the foot may turn on the
@@ -184,7 +189,14 @@ def placed(t: np.ndarray, quaternion: np.ndarray, position: np.ndarray, start: S
     """
     turn = transform.Rotation.from_rotvec([0.0, 0.0, start.heading])
     position = turn.apply(position) + np.asarray(start.position)
-    return Footfalls.at(t, position, heading_of(quaternion) + start.heading)
+    return replace(Footfalls.at(t, position, heading_of(quaternion) + start.heading), strides=strides)
+
+
+def start_temperature(recording: Recording, rest: Rest) -> float:
+    """Mean temperature (degC) of the still start; NaN where the sensor reports none."""
+    if recording.temperature is None:
+        return math.nan
+    return float(np.mean(recording.temperature[1 : rest.last + 1]))
 
 
 def detect(recording: Recording, params: PdrParams) -> Detected:

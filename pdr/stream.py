@@ -17,9 +17,11 @@ from footfall.pdr.reckoning import (
     placed,
     refuse_gaps,
     scores,
+    start_temperature,
 )
 from footfall.pdr.rest import Rest, static_bias
 from footfall.pdr.stance import compact, find_stances
+from footfall.pdr.strides import Sums, integrals, strides_of
 from footfall.recording import Recording
 from footfall.runs import runs
 
@@ -65,6 +67,7 @@ def dead_reckon_blocks(
     if rest_time is not None:
         params = replace(params, bias_s=rest_time(held))
     rest = static_bias(held, params.bias_s)
+    warm = start_temperature(held, rest)
     reckoner = _Reckoner(params, rest, level_attitude(rest.force))
     for block in waiting:
         held = _joined(held, block)
@@ -74,7 +77,9 @@ def dead_reckon_blocks(
     t, quaternion, position = map(np.concatenate, zip(*reckoner.made, strict=True))
     if len(t) < 2:
         raise InputError(f"no stride found after the {params.bias_s:g} s at rest", "recording")
-    return placed(t, quaternion, position, start), params.bias_s
+    made, footfalls = reckoner.summed()
+    strides = strides_of(made, footfalls, rest.force, warm)
+    return placed(t, quaternion, position, start, strides), params.bias_s
 
 
 def _beginning(waiting: Iterator[Recording], bias_s: float) -> Recording:
@@ -94,6 +99,9 @@ def _joined(first: Recording, second: Recording) -> Recording:
         t=np.concatenate([first.t, second.t]),
         gyro=np.concatenate([first.gyro, second.gyro]),
         accel=np.concatenate([first.accel, second.accel]),
+        temperature=None
+        if first.temperature is None or second.temperature is None
+        else np.concatenate([first.temperature, second.temperature]),
     )
 
 
@@ -101,7 +109,8 @@ def _joined(first: Recording, second: Recording) -> Recording:
 class _Reckoner:
     """Where the walk has come to: attitude and position at the reset `carry` of the samples held.
 
-    `made` are the footfalls: time, attitude and position of those of each part.
+    `made` are the footfalls: time, attitude and position of those of each part. `parts` are the sums over all
+    resets, a part's first of which is the last of the part before, and the footfalls' places among them.
     """
 
     params: PdrParams
@@ -112,6 +121,18 @@ class _Reckoner:
     seen: int = 0
     begun: bool = False
     made: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = field(default_factory=list)
+    parts: list[tuple[Sums, np.ndarray]] = field(default_factory=list)
+
+    def summed(self) -> tuple[Sums, np.ndarray]:
+        """Sums between all resets, and the places of footfalls among them."""
+        sums: list[tuple[np.ndarray, ...]] = []
+        at, ahead = [], 0
+        for made, footfalls in self.parts:
+            rows = slice(1 if sums else 0, None)
+            sums.append((made.t[rows], made.sums[rows], made.temperature[rows]))
+            at.append(footfalls + ahead)
+            ahead += len(made.t) - 1
+        return Sums(*map(np.concatenate, zip(*sums, strict=True))), np.concatenate(at)
 
     def take(self, held: Recording, last: bool) -> Recording:
         """Reckon as far as stances are certain; returns the samples that are still needed."""
@@ -147,7 +168,8 @@ class _Reckoner:
         first = min(keep, int(resets[-1]))
         self.rest = replace(rest, last=int(resets[-1]) - first)
         self.seen, self.begun = len(t) - first, True
-        return Recording(t=t[first:], gyro=held.gyro[first:], accel=held.accel[first:])
+        warm = None if held.temperature is None else held.temperature[first:]
+        return Recording(t[first:], held.gyro[first:], held.accel[first:], warm)
 
     def _cut(self, t: np.ndarray, score: np.ndarray) -> tuple[int | None, int]:
         """Last sample up to which stances are certain, and the first that is still needed.
@@ -181,7 +203,7 @@ class _Reckoner:
     def _reckon(self, held: Recording, resets: np.ndarray, footfalls: np.ndarray) -> None:
         if len(resets) > 1:
             refuse_gaps(held.t, int(resets[0]), int(resets[-1]), self.params.max_gap_s)
-        quaternion, position = _kernels.reckon(
+        quaternion, position, sums = _kernels.reckon(
             compact(held.t),
             compact(held.gyro),
             compact(held.accel),
@@ -192,4 +214,6 @@ class _Reckoner:
         )
         position = position + self.position
         self.made.append((held.t[resets[footfalls]], quaternion[footfalls], position[footfalls]))
+        warm = integrals(held.t, held.temperature, resets)
+        self.parts.append((Sums(held.t[resets], sums, warm), footfalls))
         self.quaternion, self.position = quaternion[-1].copy(), position[-1].copy()

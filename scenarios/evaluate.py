@@ -20,6 +20,8 @@ from footfall.scenarios.trial import Row, Setup, Trial
 
 AnyMethod = str | Method | Callable[..., Track]
 
+NOISE_STEP = 100_000  # between the seeds of one unit's noises: more than there are units
+
 
 @dataclass(frozen=True)
 class Rows(Sequence[Row]):
@@ -77,24 +79,43 @@ class Rows(Sequence[Row]):
 
 
 def cases(
-    setup: Setup, *, units: int, walks: int | None = None, seed: int | None = None, crossed: bool = False
+    setup: Setup,
+    *,
+    units: int,
+    walks: int | None = None,
+    seed: int | None = None,
+    crossed: bool = False,
+    first_unit: int = OTHER_UNITS_FROM,
+    noises: int = 1,
 ) -> list[Trial]:
-    """Units (seeds from 1000) dealt to the walks of a scenario, each with the noise of its own seed.
+    """Units dealt to the walks of a scenario, each with the noise of its own seed.
 
     Parameters
     ----------
     walks, seed : how many, and of the first; the scenario's when None
     crossed : whether every unit is worn on every walk
+    first_unit : seed of the first unit, the next has the next
+    noises : how many a unit is heard through: of its own seed, and of seeds `NOISE_STEP` apart
     """
     scenario = setup.scenario
     count = scenario.seeds.walks if walks is None else walks
     base = scenario.seeds.base if seed is None else seed
-    worn = range(OTHER_UNITS_FROM, OTHER_UNITS_FROM + units)
+    worn = range(first_unit, first_unit + units)
     pairs = product(range(count), worn) if crossed else ((unit % count, unit) for unit in worn)
     return [
-        Trial(setup, number, walk_seed=base + number, unit_seed=unit, noise_seed=unit)
+        Trial(setup, number, walk_seed=base + number, unit_seed=unit, noise_seed=unit + NOISE_STEP * noise)
         for number, unit in sorted(pairs)
+        for noise in range(noises)
     ]
+
+
+def travelling(methods: Sequence[Method], workers: int | None = None) -> int | None:
+    """`workers`; or 1 where a method (a lambda, a function of a notebook) cannot travel to others."""
+    try:
+        dumps(methods)
+    except (PicklingError, AttributeError, TypeError):
+        return 1
+    return workers
 
 
 def evaluate(
@@ -118,8 +139,8 @@ def evaluate(
     units : individual IMUs, dealt to the walks
     walks, seed, imu : the scenario's own when None
     values : address -> value (`footfall parameters`), as `--set` takes them
-    workers : processes, one a core when None; what cannot travel to another process (a lambda, a function
-        of a notebook) is called in this one
+    workers : processes, one a core when None; what cannot travel to another (`travelling`) is called in this
+        one
     on_progress : as of `execute`; bars on a terminal when None
 
     Returns
@@ -136,10 +157,8 @@ def evaluate(
     methods: Iterable[AnyMethod] = [method] if single else method  # type: ignore[list-item, assignment]
     made = with_values(documents(scenario, imu=imu, methods=methods), values or {}).setup()
     trials = cases(made, units=units, walks=walks, seed=seed)
-    try:
-        dumps(made.methods)
-    except (PicklingError, AttributeError, TypeError):
-        workers = 1
     with showing() as progress:
-        found = execute(trials, workers=workers, on_progress=on_progress or progress)
+        found = execute(
+            trials, workers=travelling(made.methods, workers), on_progress=on_progress or progress
+        )
         return Rows(tuple(row for outcome in found for row in outcome.rows))

@@ -23,6 +23,9 @@ from footfall.scenarios.warm import warm
 from footfall.simulate.cache import is_cached, plan_key
 from footfall.simulate.walk import Walk
 
+# What numerical libraries read their number of threads from.
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
 CHUNK = 10  # trials that a worker does in one go, with one walk in memory
 
 _shared: Any = None  # in a worker: metres walked, by walk
@@ -212,17 +215,23 @@ def _one(trial: Trial, walk: Walk | InputError, keep: bool, store: Path | None) 
 def _walk_job(at: int, trial: Trial, folder: Path | None) -> InputError | None:
     """In a worker: see that the walk is in the cache, or tell why it came to no end."""
 
-    def report(metres: float) -> None:
-        _shared[at] = metres
-
-    walk = _hold(trial, folder, report)
+    walk = hold(trial, folder, telling(at))
     return walk if isinstance(walk, InputError) else None
 
 
-def _hold(
+def telling(at: int) -> Callable[[float], None]:
+    """In a worker of `worker_pool`: writes the shared number at this place."""
+
+    def report(number: float) -> None:
+        _shared[at] = number
+
+    return report
+
+
+def hold(
     trial: Trial, folder: Path | None, report: Callable[[float], None] | None = None
 ) -> Walk | InputError:
-    """The trial's walk, read once for all trials that follow each other on it."""
+    """The trial's walk, read once for all trials that follow each other on it; or why there is none."""
     global _held
     key = (trial.walk_seed, plan_key(trial.plan, stock_policy()))
     if _held is None or _held[0] != key:
@@ -235,7 +244,7 @@ def _chunk_job(
     part: _Group, keep: Sequence[bool], places: _Places
 ) -> list[tuple[int, tuple[Row, ...], Kept | None]]:
     """In a worker: trials on one walk. The trials themselves stay here: their scenarios are big."""
-    walk = _hold(part.trials[0], places.walks)
+    walk = hold(part.trials[0], places.walks)
     found = []
     for index, trial, kept in zip(part.index, part.trials, keep, strict=True):
         outcome = _one(trial, walk, kept, places.footfalls)
@@ -255,6 +264,18 @@ def _start_worker(shared: Any) -> None:
         os._exit(1)
 
     threading.Thread(target=follow, daemon=True).start()
+
+
+@contextmanager
+def _one_thread_each() -> Iterator[None]:
+    """Processes that are started here leave each other the cores: their libraries start no threads."""
+    mine = {name: "1" for name in _THREADS if name not in os.environ}
+    os.environ.update(mine)
+    try:
+        yield
+    finally:
+        for name in mine:
+            os.environ.pop(name, None)
 
 
 @contextmanager
@@ -285,8 +306,9 @@ def worker_pool(workers: int, shared: int = 0) -> Iterator[tuple[ProcessPoolExec
             mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
             try:
                 # A spawning pool starts a worker with each job until all are there.
-                for started in [pool.submit(os.getpid) for _ in range(workers)]:
-                    started.result()
+                with _one_thread_each():
+                    for started in [pool.submit(os.getpid) for _ in range(workers)]:
+                        started.result()
                 all_there = True
             finally:
                 signal.pthread_sigmask(signal.SIG_SETMASK, mask)

@@ -24,10 +24,12 @@ from footfall.pdr.detectors import DETECTORS, require_detector
 from footfall.pdr.filter.ins import FilterSettings
 from footfall.pdr.reckoning import PdrParams
 from footfall.scenarios.scenario import (
+    Scenario,
     ScenarioDocument,
     ScenarioFile,
     SubjectTable,
     build_scenario,
+    listed,
     read_document,
 )
 from footfall.scenarios.trial import DEFAULT_METHODS, Setup, find, setup
@@ -89,15 +91,19 @@ class Documents:
     unit: Mapping[str, Any] = field(default_factory=dict)
     without: tuple[str, ...] = ()
 
-    def setup(self) -> Setup:
+    def setup(self, scenario: Scenario | None = None) -> Setup:
         """Checked and built.
+
+        Parameters
+        ----------
+        scenario : what is built of its document, where it is there already
 
         Raises
         ------
         InputError
             What a file, a data sheet or a method refuses.
         """
-        scenario = build_scenario(self.scenario)
+        scenario = scenario or build_scenario(self.scenario)
         made = setup(scenario, imu=self.sheet, methods=self.methods, without=self.without)
         pdr = reckoning_params(made.pdr, self.detector, self.pdr)
         guided = _about("filter", made.guided, self.guided)
@@ -160,14 +166,14 @@ def with_values(base: Documents, values: Mapping[str, Any]) -> Documents:
     for address, value in values.items():
         area, _, path = address.partition(".")
         own = {method.name for method in base.methods}
-        if area in _AREAS:  # first: the method pdr has no parameters of its own
-            base = _AREAS[area](base, address, path, value)
+        if area in AREAS:  # first: the method pdr has no parameters of its own
+            base = AREAS[area](base, address, path, value)
         elif area in own:
             base = replace(base, methods=tuple(_told(method, area, path, value) for method in base.methods))
         elif area in METHODS:
             raise InputError(f"method {area!r} is not among {', '.join(sorted(own))}", address)
         else:
-            raise InputError(f"unknown area{did_you_mean(area, [*_AREAS, *sorted(own)])}", address)
+            raise InputError(f"unknown area{did_you_mean(area, [*AREAS, *sorted(own)])}", address)
     return base
 
 
@@ -192,9 +198,9 @@ def _opened_subjects(table: Mapping[str, Any], path: str) -> Mapping[str, Any]:
     """A stock subject's name becomes a table before something in it is set."""
     first, *rest = parse(path)
     subjects = table.get("subjects")
-    if first.name != "subjects" or not rest or not isinstance(subjects, list):
+    if first.name != "subjects" or not rest:
         return table
-    return {**table, "subjects": [_as_table(entry) for entry in subjects]}
+    return {**table, "subjects": [_as_table(entry) for entry in listed(subjects)]}
 
 
 def _as_table(entry: Any) -> Any:
@@ -270,7 +276,7 @@ def _filter(base: Documents, address: str, path: str, value: Any) -> Documents:
     return replace(base, guided={**base.guided, path: value})
 
 
-_AREAS = {"scenario": _scenario, "imu": _imu, "unit": _unit, "pdr": _pdr, "filter": _filter}
+AREAS = {"scenario": _scenario, "imu": _imu, "unit": _unit, "pdr": _pdr, "filter": _filter}
 
 
 def reckoning_params(base: PdrParams, detector: str | None, values: Mapping[str, Any]) -> PdrParams:

@@ -197,7 +197,7 @@ def lay_out(spec: PathSpec, min_radius_m: float = MIN_RADIUS_M) -> Pieces:
     for i, element in enumerate(elements):
         if isinstance(element, Arc) and element.radius_m < min_radius_m:
             raise InputError(
-                f"path.elements.{i}.radius_m = {element.radius_m:g}: "
+                f"path.elements no. {i + 1}, radius_m = {element.radius_m:g}: "
                 f"the walker cannot walk an arc of less than {min_radius_m:g} m (a corner may be sharper)"
             )
         if isinstance(element, Corner):
@@ -212,7 +212,7 @@ def lay_out(spec: PathSpec, min_radius_m: float = MIN_RADIUS_M) -> Pieces:
         if isinstance(element, Straight):
             if element.length_m < trims[i]:
                 raise InputError(
-                    f"path.elements.{i}.length_m = {element.length_m:g}: "
+                    f"path.elements no. {i + 1}, length_m = {element.length_m:g}: "
                     f"too short for its corners, which take {trims[i]:.3f} m of it"
                 )
             length.append(element.length_m - trims[i])

@@ -20,9 +20,10 @@ from footfall.models.mount import MOUNTS
 from footfall.models.subject import SHOES, SUBJECTS, Subject
 from footfall.scenarios.path import Path, PathSpec, build_path
 from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height
+from footfall.settings import did_you_mean
 from footfall.simulate.plan import PHYSICS_STEP, Disturbance, Gait, Pace, Plan, Stop
 from footfall.simulate.truth import divisor
-from footfall.toml import Strict, checked, parse_toml
+from footfall.toml import Strict, checked, no_such_file, parse_toml
 
 STOCK = File(__file__).parent / "stock"
 
@@ -50,7 +51,8 @@ SubjectEntry = Annotated[
 ]
 
 
-def _listed(value: object) -> object:
+def listed(value: Any) -> list[Any]:
+    """What may stand alone or in a list, as a list."""
     return value if isinstance(value, list) else [value]
 
 
@@ -58,12 +60,12 @@ def _listed(value: object) -> object:
 _WanderM = Annotated[
     tuple[Annotated[float, Field(ge=0, le=0.5)], ...],
     Field(strict=False, min_length=1),
-    BeforeValidator(_listed),
+    BeforeValidator(listed),
 ]
 _WanderTimeS = Annotated[
     tuple[Annotated[float, Field(ge=0.5, le=60)], ...],
     Field(strict=False, min_length=1),
-    BeforeValidator(_listed),
+    BeforeValidator(listed),
 ]
 
 
@@ -152,7 +154,7 @@ class ScenarioFile(Strict):
     """A scenario as it stands in TOML."""
 
     description: Annotated[str, Field(min_length=1)]
-    subjects: Annotated[tuple[SubjectEntry, ...], Field(strict=False, min_length=1)]
+    subjects: Annotated[tuple[SubjectEntry, ...], Field(strict=False, min_length=1), BeforeValidator(listed)]
     path: PathSpec
     gait: GaitTable
     stops: Annotated[tuple[StopTable, ...], Field(strict=False)] = ()
@@ -287,7 +289,8 @@ class Scenario:
 
 def stock_scenarios() -> tuple[str, ...]:
     """Names of the scenarios that come with Footfall."""
-    return tuple(sorted(file.stem for file in STOCK.glob("*.toml")))
+    # Gates lie beside them, in closed-loop.gates.toml.
+    return tuple(sorted(file.stem for file in STOCK.glob("*.toml") if "." not in file.stem))
 
 
 def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
@@ -312,8 +315,7 @@ def read_document(name_or_path: str | os.PathLike[str]) -> ScenarioDocument:
     if (name := os.fspath(name_or_path)) in stock_scenarios():
         file = STOCK / f"{name}.toml"
     elif not (file := File(name)).is_file():
-        stock = ", ".join(stock_scenarios())
-        raise InputError(f"scenario {name!r}: neither a stock scenario ({stock}) nor a TOML file that exists")
+        raise no_such_file("scenario", name, stock_scenarios())
     return ScenarioDocument(file.stem, file.parent, parse_toml(file), str(file))
 
 
@@ -337,7 +339,7 @@ def _built(document: ScenarioDocument, content: ScenarioFile) -> Scenario:
     path, sensor = build_path(content.path), content.sensor
     require_one_height(path)
     if sensor.mount not in MOUNTS:
-        raise InputError(f"sensor.mount = {sensor.mount!r}: expected one of {', '.join(MOUNTS)}")
+        raise InputError(f"sensor.mount = {sensor.mount!r} is unknown{did_you_mean(sensor.mount, MOUNTS)}")
     try:
         divisor(PHYSICS_STEP, sensor.rate_hz)
     except InputError as error:
@@ -361,10 +363,10 @@ def _stops(tables: tuple[StopTable, ...], length: float) -> tuple[Stop, ...]:
     at = [0.0, *(table.at_m for table in tables), length]
     for i, (before, after) in enumerate(pairwise(at)):
         if after - before < 3.0:
-            key, value = (f"stops.{i}.at_m", after) if i < len(tables) else (f"stops.{i - 1}.at_m", before)
+            number, value = (i + 1, after) if i < len(tables) else (i, before)
             raise InputError(
-                f"{key} = {value:g}: expected at least 3 m beyond the stop (or the start) before it and "
-                f"before the path's end at {length:g} m"
+                f"stops no. {number}, at_m = {value:g}: expected at least 3 m beyond the stop "
+                f"(or the start) before it and before the path's end at {length:g} m"
             )
     return tuple(Stop(**table.model_dump()) for table in tables)
 
@@ -375,8 +377,8 @@ def _paces(tables: tuple[PaceTable, ...], length: float) -> tuple[Pace, ...]:
     for i, (before, after) in enumerate(pairwise(at)):
         if not before < after < length:
             raise InputError(
-                f"paces.{i}.at_m = {after:g}: expected beyond the change (or the start) before it at "
-                f"{before:g} m and before the path's end at {length:g} m"
+                f"paces no. {i + 1}, at_m = {after:g}: expected beyond the change (or the start) "
+                f"before it at {before:g} m and before the path's end at {length:g} m"
             )
     return tuple(Pace(**table.model_dump()) for table in tables)
 
@@ -389,8 +391,10 @@ def _temperatures(entry: TemperatureTable | tuple[TemperatureTable, ...]) -> tup
 def _subject(i: int, entry: str | SubjectTable) -> Subject:
     if isinstance(entry, SubjectTable):
         if entry.shoe not in SHOES:
-            raise InputError(f"subjects.{i}.shoe = {entry.shoe!r}: expected one of {', '.join(SHOES)}")
+            told = f"subjects no. {i + 1}, shoe = {entry.shoe!r} is unknown"
+            raise InputError(f"{told}{did_you_mean(entry.shoe, SHOES)}")
         return Subject(**entry.model_dump(exclude={"shoe"}), sole_time_s=SHOES[entry.shoe])
     if entry not in SUBJECTS:
-        raise InputError(f"subjects.{i} = {entry!r}: expected one of {', '.join(SUBJECTS)}, or a table")
+        told = f"subjects no. {i + 1} = {entry!r} is unknown"
+        raise InputError(f"{told}{did_you_mean(entry, [*SUBJECTS, 'a table'])}")
     return SUBJECTS[entry]

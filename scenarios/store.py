@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -11,13 +12,15 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.identity import digest_of
 from footfall.pdr.footfalls import Footfalls
+from footfall.pdr.strides import Strides
 from footfall.sources import stage_digest
 from footfall.tables import replacing
 
 if TYPE_CHECKING:
     from footfall.scenarios.trial import Trial
 
-_FIELDS = ("t", "interval", "distance", "rate", "heading")
+_FIELDS = ("t", "interval", "distance", "rate", "position", "heading")
+_STRIDES = tuple(item.name for item in fields(Strides))
 
 
 class Reckoned(NamedTuple):
@@ -49,15 +52,24 @@ def read_footfalls(file: Path) -> Reckoned | None:
     try:
         with np.load(file, allow_pickle=False) as kept:
             columns = {name: kept[name] for name in _FIELDS}
-            return Reckoned(Footfalls(position=kept["position"], **columns), str(kept["recording_sha"]))
+            strides = Strides(**{name: kept[f"stride_{name}"] for name in _STRIDES})
+            return Reckoned(Footfalls(**columns, strides=strides), str(kept["recording_sha"]))
     except (OSError, ValueError, KeyError, EOFError):
         return None
 
 
 def write_footfalls(file: Path, found: Reckoned) -> None:
     """Keep footfalls. A full disk costs only that they are reckoned again."""
-    columns = {name: getattr(found.footfalls, name) for name in (*_FIELDS, "position")}
+    columns = {name: getattr(found.footfalls, name) for name in _FIELDS}
+    columns |= {f"stride_{name}": getattr(found.footfalls.strides, name) for name in _STRIDES}
     with suppress(OSError, InputError):
         file.parent.mkdir(parents=True, exist_ok=True)
         with replacing(file) as temporary, temporary.open("wb") as out:
             np.savez(out, recording_sha=np.array(found.recording_sha), **columns)
+
+
+def footfalls_folder() -> Path:
+    """Where studies keep footfalls: beside the walks, in the user's cache."""
+    from footfall.simulate.cache import cache_folder
+
+    return cache_folder() / "footfalls"

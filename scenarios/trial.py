@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
@@ -99,7 +101,7 @@ class Row:
     Attributes
     ----------
     subject : name of the person; footfalls : rows of the track
-    stage : of a failure: "walk", "record", "track" or "score"
+    stage : of a failure: "walk", "record", "track" or "score"; "worker" where the process that did it ended
     walk_sha, recording_sha : of their content, or "" where there is none
     """
 
@@ -150,11 +152,15 @@ class Kept:
 
 @dataclass(frozen=True)
 class Outcome:
-    """A trial's rows, one a method, and what it went through where that was asked for."""
+    """A trial's rows, one a method, and what it went through where that was asked for.
+
+    `seconds` that it took by stage: "record" and "track", which dead reckoning is part of, and "score".
+    """
 
     trial: Trial
     rows: tuple[Row, ...]
     kept: Kept | None = None
+    seconds: Mapping[str, float] = field(default_factory=dict, compare=False)
 
     @property
     def scores(self) -> dict[str, Score]:
@@ -267,7 +273,15 @@ def recording_of(trial: Trial, walk: Walk) -> Recording:
     return record(walk, trial.worn, **_weather(trial))
 
 
-def perform(trial: Trial, walk: Walk, *, keep: bool = False, store: Path | None = None) -> Outcome:
+def perform(
+    trial: Trial,
+    walk: Walk,
+    *,
+    keep: bool = False,
+    store: Path | None = None,
+    source: Callable[[], Recording] | None = None,
+    surprised: Callable[[Exception], None] | None = None,
+) -> Outcome:
     """Record the trial's walk, navigate by each method and score.
 
     What a recording, method or score refuses becomes the `error` of its row.
@@ -276,82 +290,97 @@ def perform(trial: Trial, walk: Walk, *, keep: bool = False, store: Path | None 
     ----------
     walk : of the trial (`walk_of`)
     keep : whether walk, recording, drift budget and tracks are part of the outcome
-    store : folder of footfalls that are taken from there, or kept there, where no method needs samples
+    store : folder of footfalls that are taken from there, where no method needs samples, and kept there
+    source : gives the trial's recording, where others have it, too; made here when None
+    surprised : called with an exception that is nobody's refusal, which then is an `error`, too; None: raised
     """
-    blank = Row(
-        scenario=trial.setup.scenario.name,
-        number=trial.number,
-        walk_seed=trial.walk_seed,
-        subject=str(walk.meta["subject"]),
-        imu=trial.setup.imu,
-        unit_seed=trial.unit_seed,
-        noise_seed=trial.noise_seed,
-        method="",
-        walk_sha=walk.sha,
-    )
-    setup, budget = trial.setup, None
+    blank = blank_row(trial, subject=str(walk.meta["subject"]), walk_sha=walk.sha)
+    setup, budget, spent = trial.setup, None, dict.fromkeys(("record", "track", "score"), 0.0)
+    expected = InputError if surprised is None else Exception
     try:
-        if keep:
-            told = _weather(trial)
-            recording, budget = record_with_budget(walk, trial.worn, **told, bias_time=setup.pdr.bias_s)
-            given, sha = reckoning(setup, walk, recording), recording.sha
-        elif store is not None and all(method.needs == "footfalls" for method in setup.methods):
-            given, sha = _stored(trial, walk, store)
-        else:
-            recording = recording_of(trial, walk)
-            given, sha = reckoning(setup, walk, recording), recording.sha
-    except InputError as error:
-        refused = replace(blank, stage="record", error=str(error))
-        return Outcome(trial, tuple(replace(refused, method=method.name) for method in setup.methods))
+        with _timed(spent, "record"):
+            if keep:
+                told = _weather(trial)
+                recording, budget = record_with_budget(walk, trial.worn, **told, bias_time=setup.pdr.bias_s)
+                given, sha = reckoning(setup, walk, recording), recording.sha
+            elif store is not None and all(method.needs == "footfalls" for method in setup.methods):
+                given, sha = _stored(trial, walk, store, source)
+            else:
+                recording = source() if source else recording_of(trial, walk)
+                given, sha = reckoning(setup, walk, recording), recording.sha
+    except expected as error:
+        refused = replace(blank, stage="record", error=_reason(error, surprised))
+        rows = tuple(replace(refused, method=method.name) for method in setup.methods)
+        return Outcome(trial, rows, seconds=spent)
     blank = replace(blank, recording_sha=sha)
-    rows, made = [], {}
-    for method in trial.setup.methods:
+    found, made = [], {}
+    for method in setup.methods:
         row, stage = replace(blank, method=method.name), "track"
         try:
-            track = made[method.name] = (
-                method.track(given) if budget is None else tracks(given, [method])[method.name]
-            )
+            with _timed(spent, stage):
+                track = made[method.name] = (
+                    method.track(given) if budget is None else tracks(given, [method])[method.name]
+                )
             row, stage = replace(row, footfalls=len(track)), "score"
-            row = replace(row, score=score(track, walk))
-        except InputError as error:
-            row = replace(row, stage=stage, error=str(error))
-        rows.append(row)
+            with _timed(spent, stage):
+                row = replace(row, score=score(track, walk))
+        except expected as error:
+            row = replace(row, stage=stage, error=_reason(error, surprised))
+        found.append(row)
+    if store is not None and budget is None and {"recording", "footfalls"} <= vars(given).keys():
+        write_footfalls(footfalls_file(store, trial, walk.sha), Reckoned(given.footfalls, sha))
     kept = None if budget is None else Kept(walk, recording, budget, made)
-    return Outcome(trial, tuple(rows), kept)
+    return Outcome(trial, tuple(found), kept, spent)
 
 
-def _stored(trial: Trial, walk: Walk, store: Path) -> tuple[Reckoning, str]:
+def _reason(error: Exception, surprised: Callable[[Exception], None] | None) -> str:
+    """What a row tells of an exception."""
+    if isinstance(error, InputError) or surprised is None:
+        return str(error)
+    surprised(error)
+    return f"{type(error).__name__}: {(str(error).splitlines() or [''])[0]}"
+
+
+@contextmanager
+def _timed(spent: dict[str, float], stage: str) -> Iterator[None]:
+    start = time.perf_counter()
+    try:
+        yield
+    finally:
+        spent[stage] += time.perf_counter() - start
+
+
+def _stored(
+    trial: Trial, walk: Walk, store: Path, source: Callable[[], Recording] | None
+) -> tuple[Reckoning, str]:
     """What the methods are told, of footfalls that are kept; and the hash of their recording."""
-    file = footfalls_file(store, trial, walk.sha)
-    found = read_footfalls(file)
+    found = read_footfalls(footfalls_file(store, trial, walk.sha))
     if found is None:
-        recording = recording_of(trial, walk)
-        given = reckoning(trial.setup, walk, recording)
-        try:
-            found = Reckoned(given.footfalls, recording.sha)
-        except InputError:  # which every method is to tell
-            return given, recording.sha
-        write_footfalls(file, found)
+        recording = source() if source else recording_of(trial, walk)
+        return reckoning(trial.setup, walk, recording), recording.sha
     start = start_pose(walk, trial.setup.pdr.bias_s)
     return StreamedReckoning(lambda: found.footfalls, start, trial.setup.directions), found.recording_sha
 
 
-def failed(trial: Trial, error: InputError) -> Outcome:
-    """The outcome of a trial whose walk came to no end."""
-    scenario = trial.setup.scenario
-    row = Row(
-        scenario=scenario.name,
+def failed(trial: Trial, error: InputError, stage: str = "walk") -> Outcome:
+    """The outcome of a trial whose walk, or whatever stage, came to no end."""
+    row = replace(blank_row(trial, trial.plan.subject.name), stage=stage, error=str(error))
+    return Outcome(trial, tuple(replace(row, method=method.name) for method in trial.setup.methods))
+
+
+def blank_row(trial: Trial, subject: str, walk_sha: str = "") -> Row:
+    """The row of a trial that no method has gone over yet."""
+    return Row(
+        scenario=trial.setup.scenario.name,
         number=trial.number,
         walk_seed=trial.walk_seed,
-        subject=trial.plan.subject.name,
+        subject=subject,
         imu=trial.setup.imu,
         unit_seed=trial.unit_seed,
         noise_seed=trial.noise_seed,
         method="",
-        stage="walk",
-        error=str(error),
+        walk_sha=walk_sha,
     )
-    return Outcome(trial, tuple(replace(row, method=method.name) for method in trial.setup.methods))
 
 
 def _weather(trial: Trial) -> dict[str, Any]:

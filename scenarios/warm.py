@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from footfall.scenarios.trial import Trial, perform
 from footfall.simulate import walking
 from footfall.simulate.walk import TrueFootfalls, Walk
 
-_STRIDES = 12
+_CORNER = (*[0.0] * 6, *[math.pi / 2] * 6)
 
 
 def warm(trial: Trial, *, walks: bool) -> None:
@@ -36,9 +37,11 @@ def warm(trial: Trial, *, walks: bool) -> None:
     )
 
 
-def synthetic(still_s: float, rate_hz: float) -> Walk:
-    """The truth of a foot that rests for `still_s`, and walks some strides straight on and round a corner."""
-    headings = [0.0] * (_STRIDES // 2) + [math.pi / 2] * (_STRIDES // 2)
+def synthetic(still_s: float, rate_hz: float, headings: Sequence[float] = _CORNER) -> Walk:
+    """The truth of a foot that rests for `still_s`, and walks with these headings (rad) at its footfalls.
+
+    Some strides straight on and round a corner, if nothing is said.
+    """
     made = synthetic_walk(headings, still_s=still_s, rate=rate_hz)
     rows = made.at(made.mid_stance)
     rows[0] = int(still_s * rate_hz)

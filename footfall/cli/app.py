@@ -18,6 +18,7 @@ from footfall.cli.allan import allan
 from footfall.cli.cache import cache
 from footfall.cli.check import check
 from footfall.cli.export import export
+from footfall.cli.gate import gate
 from footfall.cli.list import list_
 from footfall.cli.parameters import parameters
 from footfall.cli.record import record
@@ -25,6 +26,7 @@ from footfall.cli.render import render
 from footfall.cli.run import run
 from footfall.cli.score import score
 from footfall.cli.sensitivity import sensitivity
+from footfall.cli.sweep import sweep
 from footfall.cli.terminal import perform
 from footfall.cli.track import track
 from footfall.cli.walk import walk
@@ -55,7 +57,7 @@ def _main(
         print(context.get_help())
 
 
-for command in (
+COMMANDS = (
     list_,
     parameters,
     run,
@@ -65,13 +67,14 @@ for command in (
     track,
     score,
     check,
+    sweep,
+    gate,
+    sensitivity,
     export,
     allan,
-    sensitivity,
-):
+)
+for command in COMMANDS:
     app.command(command.__name__.rstrip("_"))(command)
-for study in (sensitivity,):
-    app.command(study.__name__)(study)
 app.add_typer(cache, name="cache")
 
 

@@ -51,10 +51,13 @@ def record(
     without: WithoutOption = None,
     only: OnlyOption = None,
     indoors: Annotated[
-        float, typer.Option(help="Temperature of the room that the IMU comes from, degC.", callback=finite)
+        float,
+        typer.Option(
+            min=-40, max=85, help="Temperature of the room that the IMU comes from, degC.", callback=finite
+        ),
     ] = 20.0,
     outdoors: Annotated[
-        float, typer.Option(help="Temperature where it is walked, degC.", callback=finite)
+        float, typer.Option(min=-40, max=85, help="Temperature where it is walked, degC.", callback=finite)
     ] = 20.0,
     bias_shift: Annotated[
         float,
@@ -77,7 +80,7 @@ def record(
     from footfall.formats import parse_units, read
     from footfall.models.imu import TemperatureProfile, draw_unit
     from footfall.models.imu.override import overridden
-    from footfall.recording import write_recording
+    from footfall.recording import refuse_recording, write_recording
     from footfall.scenarios.parameters import parsed, sensor
     from footfall.simulate.from_recording import add_errors
     from footfall.simulate.record import record as record_walk
@@ -102,6 +105,7 @@ def record(
     air = TemperatureProfile.step(indoors, outdoors)
     with ERR.status("recording"):
         if walk is not None:
+            refuse_recording(walk)
             recording = record_walk(
                 read_walk(walk),
                 worn,

@@ -72,12 +72,14 @@ def score(
 
 def _beside_walk(track: Path, walk: Path, align: str, as_json: bool) -> None:
     from footfall.pdr.track import read_track
+    from footfall.recording import refuse_recording
     from footfall.scenarios.judge.score import require_align
     from footfall.scenarios.judge.score import score as judge
     from footfall.scenarios.report.tables import score_table
     from footfall.simulate.walk import read_walk
 
     fitted = require_align(align)
+    refuse_recording(walk)
     estimate, truth = read_track(track), read_walk(walk)
     with blaming(track, "track"):
         result = judge(estimate, truth, fitted)

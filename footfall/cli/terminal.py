@@ -6,7 +6,7 @@ import json
 import math
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -84,10 +84,23 @@ def perform(app: typer.Typer, arguments: list[str] | None) -> int:
         code = INTERRUPTED
     except _USAGE_ERROR as error:
         command = getattr(getattr(error, "ctx", None), "command_path", "footfall")
-        return _refuse(f"{error.format_message().rstrip('.')} (see `{command} --help`)")  # type: ignore[attr-defined]
+        given = _given(error, sys.argv[1:] if arguments is None else arguments)
+        told = error.format_message().rstrip(".")  # type: ignore[attr-defined]
+        return _refuse(f"{told}{given} (see `{command} --help`)")
     if code == INTERRUPTED:
         print("footfall: interrupted", file=sys.stderr)
     return code
+
+
+def _given(error: BaseException, arguments: Sequence[str]) -> str:
+    """The value of the option that an error is about, which the message of typer leaves out."""
+    for option in getattr(getattr(error, "param", None), "opts", ()):
+        for at, argument in enumerate(arguments):
+            if argument.startswith(f"{option}="):
+                return f", got {argument.partition('=')[2]!r}"
+            if argument == option and at + 1 < len(arguments):
+                return f", got {arguments[at + 1]!r}"
+    return ""
 
 
 def _refuse(sentence: str) -> int:

@@ -54,6 +54,7 @@ def walk(
 
     from footfall.models.mount import MOUNTS
     from footfall.scenarios.parameters import documents, parsed, require_areas, with_values
+    from footfall.settings import did_you_mean
     from footfall.simulate.cache import cached_walk
     from footfall.simulate.plan import PHYSICS_STEP
     from footfall.simulate.truth import divisor
@@ -68,7 +69,7 @@ def walk(
     plan = with_values(documents(scenario), values).setup().scenario.plan(number - 1)
     if mount is not None:
         if mount not in MOUNTS:
-            raise InputError(f"--mount {mount!r} is unknown, expected one of {', '.join(MOUNTS)}")
+            raise InputError(f"--mount {mount!r} is unknown{did_you_mean(mount, MOUNTS)}")
         plan = replace(plan, mount=MOUNTS[mount])
     if rate is not None:
         divisor(PHYSICS_STEP, rate)

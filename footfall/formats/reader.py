@@ -166,7 +166,7 @@ class Blocks:
 
 
 def _bare(samples: Samples, begin: float) -> Recording:
-    return Recording(t=samples.t - begin, gyro=samples.gyro, accel=samples.accel)
+    return Recording(samples.t - begin, samples.gyro, samples.accel, samples.temperature)
 
 
 def as_recording(samples: Samples, source: Source, findings: Findings) -> Recording:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from footfall.errors import InputError
+from footfall.settings import did_you_mean
 
 # In the order in which a sensor suffers them.
 EFFECTS = (
@@ -28,4 +29,4 @@ def require_effects(names: Collection[str]) -> None:
     """Raise InputError when a name is not one of `EFFECTS`."""
     for name in names:
         if name not in EFFECTS:
-            raise InputError(f"effect {name!r} does not exist (expected {', '.join(EFFECTS)})")
+            raise InputError(f"effect {name!r} does not exist{did_you_mean(name, EFFECTS)}")

@@ -11,6 +11,7 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.models.imu.spec import ACCEL_KEYS, GYRO_KEYS
 from footfall.models.imu.unit import ImuUnit
+from footfall.settings import did_you_mean
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ def overridden(unit: ImuUnit, values: Mapping[str, Any]) -> ImuUnit:
     for name, value in values.items():
         constant = CONSTANTS.get(name)
         if constant is None:
-            raise InputError(f"unit.{name}: unknown, expected one of {', '.join(CONSTANTS)}")
+            raise InputError(f"unit.{name}: unknown{did_you_mean(name, CONSTANTS)}")
         rows = " rows of 3" if len(constant.shape) == 2 else ""
         wrong = InputError(f"unit.{name} = {value}: expected a list of 3{rows} numbers")
         try:

@@ -13,7 +13,7 @@ from pydantic import BaseModel, Field, create_model
 
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
-from footfall.toml import Strict, checked, parse_toml
+from footfall.toml import Strict, checked, no_such_file, parse_toml
 
 SHEETS = Path(__file__).resolve().parent / "sheets"
 
@@ -140,9 +140,16 @@ _Keys = Mapping[str, tuple[str, float]]
 
 def _section(name: str, keys: _Keys) -> type[Strict]:
     """Model of a sheet's table: every key may be absent (no such error), none may be negative."""
-    positive = {"range", "bandwidth"}  # zero would silence the sensor
+    bounds = {
+        "range": Field(gt=0),  # zero would silence the sensor
+        "bandwidth": Field(gt=0),
+        # Beyond these it is no sensor any more, but a slip of the unit.
+        "scale_sigma": Field(ge=0, le=0.5),
+        "misalignment_sigma": Field(ge=0, le=45),
+        "non_linearity_sigma": Field(ge=0, le=50),
+    }
     fields: dict[str, Any] = {
-        key: (Annotated[float | None, Field(gt=0) if attribute in positive else Field(ge=0)], None)
+        key: (Annotated[float | None, bounds.get(attribute, Field(ge=0))], None)
         for key, (attribute, _) in keys.items()
     }
     return create_model(name, __base__=Strict, **fields)
@@ -210,8 +217,7 @@ def read_sheet(name_or_path: str | os.PathLike[str]) -> SheetDocument:
     if (name := os.fspath(name_or_path)) in stock_specs():
         path = SHEETS / f"{name}.toml"
     elif not (path := Path(name)).is_file():
-        stock = ", ".join(stock_specs())
-        raise InputError(f"imu = {name!r}: neither a stock IMU ({stock}) nor a TOML file that exists")
+        raise no_such_file("IMU", name, stock_specs())
     return SheetDocument(name, str(path), parse_toml(path))
 
 

@@ -43,13 +43,13 @@ def run_report(name: str, results: Sequence[Result]) -> list[RenderableType]:
 
 
 def path_line(path: Path) -> str:
-    """Length of a path and how well it closes, or how far and how high from its start it ends."""
-    gap, heading, climb = path.closure.gap_m, path.closure.heading_deg, path.closure.climb_m
-    length = f"Path of {path.route.length:.2f} m"
+    """Length of a path and whether it returns, or how far and how high from its start it ends."""
+    gap, climb = path.closure.gap_m, path.closure.climb_m
+    length = f"The path is {path.route.length:.4g} m long and"
     if path.closed:
-        millimetres = f"{gap * 1000:.2g} mm on the ground and {abs(climb) * 1000:.2g} mm of height"
-        return f"{length}, closed within {abs(heading):.1g} deg, {millimetres}"
-    return f"{length}, open: it ends {gap:.1f} m from its start, {climb:+.2f} m higher"
+        return f"{length} ends where it starts"
+    height = f", {abs(climb):.2f} m {'higher' if climb > 0 else 'lower'}" if abs(climb) >= 0.005 else ""
+    return f"{length} ends {gap:.1f} m from its start{height}"
 
 
 _CHOSEN_UNITS = (
@@ -82,7 +82,7 @@ def heading_table(results: Sequence[Result]) -> Group:
         cells = (_pair(score) + _gain(row, name) for name, score in row.items())
         table.add_row(walk, unit, *cells, style="bold" if walk == "mean" else None)
     compared = "pdr" in means and len(means) > 1
-    gain = "; x: times smaller than uncorrected" if compared else ""
+    gain = "; 3.0x: so many times smaller than uncorrected" if compared else ""
     return titled(f"Heading error, final / average (deg){gain}", table)
 
 
@@ -164,7 +164,8 @@ def position_table(results: Sequence[Result]) -> Group:
     table = new_table(
         "",
         "distance\nerror %",
-        "return\nerror %",
+        # P_err, the distance between the ends of track and truth: only a closed path returns.
+        f"{'return' if results[0].trial.setup.scenario.path.closed else 'end'}\nerror %",
         "position\nRMSE m",
         "final position\nerror m",
     )
@@ -183,7 +184,7 @@ def position_table(results: Sequence[Result]) -> Group:
 _SCORE_LABELS = {
     "heading_error_mean_deg": "heading error, mean (deg)",
     "heading_error_final_deg": "heading error, final (deg)",
-    "return_error_pct": "return error (% of the distance)",
+    "return_error_pct": "end from the true end (% of the distance)",
     "distance_error_pct": "distance error (%)",
     "position_rmse_m": "position error, RMS (m)",
     "position_error_final_m": "position error, final (m)",
@@ -235,8 +236,14 @@ def _pair(score: Score) -> str:
 
 
 def _gain(row: Mapping[str, Score], name: str) -> str:
-    """On a line of its own: how many times smaller than without correction, where that was scored."""
+    """On a line of its own: how many times smaller (or worse) than uncorrected, where that was scored."""
     if name == "pdr" or "pdr" not in row:
         return ""
     factor = improvement(row["pdr"], row[name])
-    return f"\n{factor.final:.1f}x / {factor.mean:.1f}x"
+    pair = factor.final, factor.mean
+    worse = [ratio < 0.95 for ratio in pair]  # what rounds to 1.0 is no worse
+    final, mean = (f"{1 / ratio if ratio and ratio < 0.95 else ratio:.1f}x" for ratio in pair)
+    if worse[0] == worse[1]:
+        return f"\n{final} / {mean}{' worse' if worse[0] else ''}"
+    words = ["worse" if bad else "better" for bad in worse]
+    return f"\n{final} {words[0]} / {mean} {words[1]}"

@@ -114,7 +114,7 @@ def test_a_program_is_checked(cli, folder):
     [
         ("check", "check: expected either a method or --command"),
         ("check pdr --command 'true {recording} {track}'", "check: expected either a method or --command"),
-        ("check hdx", "method 'hdx' is unknown, expected one of pdr"),
+        ("check hdx", "method 'hdx' is unknown; did you mean hdr?"),
         ("check nav.py", "nav.py: say which of its names: nav.py:NAME"),
         ("check --command 'true'", "true: {recording} is missing in 'true'"),
         ('check --command "true \'"', "--command: No closing quotation"),

@@ -107,7 +107,7 @@ def foreign(path, **columns):
     ("name", "make", "message"),
     [
         ("gone.parquet", lambda path: None, "no such file"),
-        ("folder.parquet", lambda path: path.mkdir(), "no such file"),
+        ("folder.parquet", lambda path: path.mkdir(), "a folder, expected a file"),
         ("empty.parquet", lambda path: path.touch(), "not a readable Parquet file"),
         ("text.parquet", lambda path: path.write_text("t,x\n1,2\n"), "not a readable Parquet file"),
         ("empty.csv", lambda path: path.touch(), "not a readable CSV file"),

@@ -88,7 +88,7 @@ def test_hdrs_evidence_is_what_the_controller_saw(drifting):
 
 
 def test_an_unknown_method_is_refused(drifting):
-    with pytest.raises(InputError, match=r"'hdx' is unknown, expected one of pdr, hdr, hdr-basic"):
+    with pytest.raises(InputError, match=r"'hdx' is unknown; did you mean hdr\?"):
         track(drifting[1], "hdx")
 
 

@@ -245,9 +245,9 @@ def test_a_method_of_an_installed_package(reckoning, installed):
     assert find_method("my-compass").name == "my-compass"
     assert find_method("my-compass", name="mine").name == "mine"
     with pytest.raises(
-        InputError, match=r"'hdx' is unknown, expected one of pdr, hdr, .*my-compass, package"
+        InputError, match=r"'nothing' is unknown; expected one of pdr, hdr, .*my-compass, package"
     ):
-        find_method("hdx")
+        find_method("nothing")
 
 
 def test_a_built_in_method_is_never_replaced(installed):

@@ -14,8 +14,9 @@ from tests.hdr.test_others import compass
 @pytest.mark.parametrize(
     ("use", "sentence"),
     [
-        ("hdx", "method 'hdx' is unknown, expected one of pdr, hdr"),
-        ("", "method '' is unknown, expected one of pdr, hdr"),
+        ("hdx", "method 'hdx' is unknown; did you mean hdr?"),
+        ("nothing", "method 'nothing' is unknown; expected one of pdr, hdr"),
+        ("", "method '' is unknown; expected one of pdr, hdr"),
         ("nav.py", "nav.py: say which of its names: nav.py:NAME"),
         ("no-such.py:Mine", "no-such.py: cannot be read (No such file or directory)"),
         ("./nav:Mine", "./nav: expected a file of Python, file.py:NAME"),

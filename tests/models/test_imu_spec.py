@@ -101,8 +101,10 @@ def test_a_bad_sheet_is_refused_by_file_key_and_value(tmp_path, text, named):
 
 
 def test_an_unknown_imu_is_refused_with_the_stock_names():
-    with pytest.raises(InputError, match=r"'nimo'.*nimu.*perfect"):
+    with pytest.raises(InputError, match=r"'nimo'.*; did you mean nimu\?"):
         load_spec("nimo")
+    with pytest.raises(InputError, match=r"'acme'.*; expected one of .*nimu.*perfect"):
+        load_spec("acme")
 
 
 def test_the_same_seed_draws_the_same_unit_and_another_seed_another():

@@ -123,6 +123,7 @@ def test_compiled_equals_plain(town):
     sign = np.sign(np.sum(compiled[0] * plain[0], axis=1))[:, None]
     np.testing.assert_allclose(compiled[0] * sign, plain[0], atol=1e-11)
     np.testing.assert_allclose(compiled[1], plain[1], atol=1e-9)
+    np.testing.assert_allclose(compiled[2], plain[2], rtol=1e-9, atol=1e-9)
 
 
 def test_trap_1_the_raw_rate_is_no_integral_of_a_rate(town):
@@ -153,7 +154,7 @@ def test_trap_5_no_correction_turns_the_heading():
     true = Rotation.from_euler("ZYX", [50, 12, -7], degrees=True)
     wrong = Rotation.from_rotvec([0.03, -0.05, 0]) * true
     resets, force = np.arange(0, len(t), 30), np.ascontiguousarray(true.inv().apply(up))
-    quaternion, _ = _kernels.reckon(
+    quaternion, *_ = _kernels.reckon(
         t, still, force, np.zeros(3), wrong.as_quat(scalar_first=True), resets, 0.1
     )
     final = Rotation.from_quat(quaternion[-1], scalar_first=True)

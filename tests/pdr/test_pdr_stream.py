@@ -33,15 +33,17 @@ START = StartPose((1.0, -2.0, 0.5), 0.7)
 @pytest.fixture(scope="module")
 def walked():
     """With noise in every channel: of instants equally still either may be taken."""
-    truth = walk(HEADINGS, still_s=6.0, pauses={10: 5.0, 11: 1.0})
+    truth = walk(HEADINGS, still_s=6.0, pauses={10: 5.0, 11: 1.0, 20: 9.0})
     noise = np.random.default_rng(2).normal(0, 0.01, truth.accel.shape)
-    return truth.recording(angle_random_walk=1e-4, accel_error=noise, seed=1)
+    recording = truth.recording(angle_random_walk=1e-4, accel_error=noise, seed=1)
+    return replace(recording, temperature=20 - 0.1 * truth.t)
 
 
 def blocks(recording, edges):
     for part in np.split(np.arange(len(recording.t)), edges):
         if len(part) > 1:
-            yield Recording(recording.t[part], recording.gyro[part], recording.accel[part])
+            warm = None if recording.temperature is None else recording.temperature[part]
+            yield Recording(recording.t[part], recording.gyro[part], recording.accel[part], warm)
 
 
 @settings(max_examples=40)
@@ -59,6 +61,8 @@ def test_blocks_make_the_footfalls_of_the_whole(walked, edges, work, name):
     assert used == 5.0
     for key in ("t", "position", "heading", "distance", "rate"):
         np.testing.assert_allclose(getattr(found, key), getattr(whole, key), rtol=0, atol=1e-9)
+    for key, values in vars(whole.strides).items():
+        np.testing.assert_allclose(getattr(found.strides, key), values, rtol=1e-9, atol=1e-6, err_msg=key)
 
 
 def test_the_adaptive_detector_differs_by_little(walked, monkeypatch):

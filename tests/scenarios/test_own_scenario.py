@@ -12,6 +12,7 @@ import pytest
 from footfall.errors import InputError
 from footfall.models.imu import TemperatureProfile, load_spec
 from footfall.models.imu.spec import SHEETS
+from footfall.scenarios.parameters import documents, with_values
 from footfall.scenarios.scenario import (
     STOCK,
     DisturbanceTable,
@@ -87,6 +88,36 @@ def test_a_users_file_works_as_a_stock_name_does(own):
     assert [without.unit_seed(walk) for walk in range(3)] == [40, 41, 42]
 
 
+def test_one_subject_may_stand_without_a_list(own):
+    several = own(('["taller", { name = "me", height_m = 1.72, mass_kg = 80.0 }]', '"shorter"'))
+    assert [subject.name for subject in load_scenario(several).subjects] == ["shorter"]
+    heavier = with_values(documents(str(several)), {"scenario.subjects[0].mass_kg": 90.0}).setup()
+    assert [subject.mass_kg for subject in heavier.scenario.subjects] == [90]
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("pace = 1.2", "unknown key 'gait.pace' = 1.2; did you mean pace_m_s?"),  # and pace_m_s is missing
+        ("pace_m_s = 1.2\nwandr_m = 0.1", "unknown key 'gait.wandr_m' = 0.1; did you mean wander_m?"),
+        (
+            "pace_m_s = 1.2\ncolour = 3",
+            "unknown key 'gait.colour' = 3; expected one of pace_m_s, ",
+        ),
+    ],
+)
+def test_an_unknown_key_is_told_before_one_that_is_missing_with_what_was_meant(own, written, meant):
+    with pytest.raises(InputError, match=re.escape(f"mine.toml: {meant}")):
+        load_scenario(own(("pace_m_s = 1.2", written)))
+
+
+def test_an_unknown_key_of_an_element_is_told_by_its_number_from_1(own):
+    path = own(("turn_deg = 90.0", "turn_deg = 90.0, radius = 3"))
+    sentence = "unknown key 'path.elements no. 2, radius' = 3; did you mean radius_m?"
+    with pytest.raises(InputError, match=re.escape(sentence)):
+        load_scenario(path)
+
+
 def test_a_document_that_is_changed_is_built_and_refused_as_a_file_is(own):
     path = own()
     document = read_document(path)
@@ -102,7 +133,7 @@ def test_a_document_that_is_changed_is_built_and_refused_as_a_file_is(own):
     with pytest.raises(InputError, match=rf"^{re.escape(str(path))}: gait.pace_m_s = 1.9: .* equal to 1.7"):
         build_scenario(document.changed("gait", pace_m_s=1.9))
     # One that comes from no file is spoken of by its name.
-    with pytest.raises(InputError, match=r"^mine: unknown key 'sensor.imo' = 3$"):
+    with pytest.raises(InputError, match=r"^mine: unknown key 'sensor.imo' = 3; did you mean imu\?$"):
         build_scenario(replace(document.changed("sensor", imo=3), source=""))
 
 
@@ -187,34 +218,42 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
         ("[gait]", "[gate]", r"key 'gait' is missing|unknown key 'gate'"),
         ('description = "mine"', "", r"key 'description' is missing"),
         ("pace_m_s = 1.2", "pace_m_s = 1.8", r"gait.pace_m_s = 1.8: .* less than or equal to 1.7"),
-        ("[path]", "paces = [{ at_m = 20.0, m_s = 2.5 }]\n[path]", r"paces.0.m_s = 2.5: .* equal to 1.7"),
+        (
+            "[path]",
+            "paces = [{ at_m = 20.0, m_s = 2.5 }]\n[path]",
+            r"paces no. 1, m_s = 2.5: .* to 1.7",
+        ),
         (
             "[path]",
             "paces = [{ at_m = 20.0, m_s = 1.5 }, { at_m = 10.0, m_s = 1.0 }]\n[path]",
-            r"paces.1.at_m = 10: expected beyond the change \(or the start\) before it at 20 m",
+            r"paces no. 2, at_m = 10: expected beyond the change \(or the start\) before it at 20 m",
         ),
         (
             "[path]",
             "paces = [{ at_m = 900.0, m_s = 1.5 }]\n[path]",
-            r"paces.0.at_m = 900: expected .* end at",
+            r"paces no. 1, at_m = 900: expected .* end at",
         ),
         ("pace_m_s = 1.2", "pace_m_s = nan", r"gait.pace_m_s = nan: .* finite"),
         ("pace_m_s = 1.2", 'pace_m_s = "1.2"', r"gait.pace_m_s = '1.2': .* valid number"),
-        ("length_m = 50 ", "length_m = -50 ", r"path.elements.0.length_m = -50(.0)?: .* greater than 0"),
-        ("turn_deg = 90.0", "turn_deg = inf", r"path.elements.1.turn_deg = inf: .* finite"),
+        ("length_m = 50 ", "length_m = -50 ", r"path.elements no. 1, length_m = -50(.0)?: .* greater than 0"),
+        ("turn_deg = 90.0", "turn_deg = inf", r"path.elements no. 2, turn_deg = inf: .* finite"),
         (
             "turn_deg = 90.0",
             "turn_deg = 90.0, radius_m = -1.0",
-            r"path.elements.1.radius_m = -1.0: .* 0",
+            r"path.elements no. 2, radius_m = -1.0: .* 0",
         ),
-        ("length_m = 30.0", "length_m = 1.0", r"path.elements.2.length_m = 1: too short for its corners"),
-        ("turn_deg = 90.0", "turn_deg = 90.0, radius = 3", r"unknown key 'path.elements.1.radius' = 3"),
+        (
+            "length_m = 30.0",
+            "length_m = 1.0",
+            r"path.elements no. 3, length_m = 1: too short for",
+        ),
+        ("turn_deg = 90.0", "turn_deg = 90.0, radius = 3", r"unknown key 'path.elements no. 2, radius' = 3"),
         ("[gait]", "closed = true\n[gait]", r"path.closed = true: .* \(50.000, 30.000\) m, 58.310 m from"),
-        ('["taller",', '["giant",', r"subjects.0 = 'giant': expected one of reference, taller, shorter"),
+        ('["taller",', '["giant",', r"subjects no. 1 = 'giant' is unknown; expected one of reference, "),
         ("mass_kg = 80.0", "mass_kg = 120.0", r"subject 'me': mass_kg = 120 is outside"),
-        ("mass_kg = 80.0", "age = 33", r"unknown key 'subjects.1.age' = 33"),
-        ('imu = "nimu"', 'imu = "nimo"', r"imu = '.*nimo': neither a stock IMU"),
-        ('imu = "nimu"', 'imu = "nimu"\nmount = "hat"', r"sensor.mount = 'hat': expected one of instep"),
+        ("mass_kg = 80.0", "age = 33", r"unknown key 'subjects no. 2, age' = 33"),
+        ('imu = "nimu"', 'imu = "nimo"', r"IMU '.*nimo': neither a stock IMU"),
+        ('imu = "nimu"', 'imu = "nimu"\nmount = "hat"', r"sensor.mount = 'hat' is unknown; expected one of "),
         (
             'imu = "nimu"',
             'imu = "nimu"\nrate_hz = 300',
@@ -241,12 +280,12 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
         (
             "pace_m_s = 1.2",
             "pace_m_s = 1.2\nwander_time_s = [4.0, 0.1]",
-            r"gait.wander_time_s.1 = 0.1: .* equal to 0.5",
+            r"gait.wander_time_s no. 2 = 0.1: .* equal to 0.5",
         ),
         ("base = 40", "base = -1", r"seeds.base = -1: .* greater than or equal to 0"),
         ("base = 40", "base = 1.5", r"seeds.base = 1.5: .* valid integer"),
         ("walks = 3", "walks = 0", r"seeds.walks = 0: .* greater than or equal to 1"),
-        ("units = [7, 9]", "units = [7, -9]", r"seeds.units.1 = -9"),
+        ("units = [7, 9]", "units = [7, -9]", r"seeds.units no. 2 = -9"),
         ("units = [7, 9]", "units = []", r"seeds.units"),
         ("[sensor]", "[sensor", r"not valid TOML"),
         ("outdoors_degC = 21.0", "outdoors_degC = -400.0", r": temperature.outdoors_degC = -400.0: "),
@@ -254,12 +293,12 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
         (
             "[temperature]",
             "[[temperature]]\nindoors_degC = 20.0\noutdoors_degC = 99.0\n[[temperature]]",
-            r": temperature.0.outdoors_degC = 99.0: .* less than or equal to 85",
+            r": temperature no. 1, outdoors_degC = 99.0: .* less than or equal to 85",
         ),
         (
             "[temperature]",
             "[[temperature]]\nindoors_degC = 20.0\n[[temperature]]",
-            r": key 'temperature.0.outdoors_degC' is missing",
+            r": key 'temperature no. 1, outdoors_degC' is missing",
         ),
         (
             "[temperature]\nindoors_degC = 21.0\noutdoors_degC = 21.0\n\n[sensor]",
@@ -278,7 +317,10 @@ def test_mistakes_are_refused_by_file_key_value_and_reason(own, old, new, messag
 
 def test_a_list_of_temperatures_is_of_at_least_one_and_of_tables(own):
     table = "[temperature]\nindoors_degC = 21.0\noutdoors_degC = 21.0\n"
-    for value, reason in (("[]", r"temperature: .* at least 1 item"), ("[5.0]", r"temperature.0 = 5.0: .*")):
+    for value, reason in (
+        ("[]", r"temperature: .* at least 1 item"),
+        ("[5.0]", r"temperature no. 1 = 5.0"),
+    ):
         path = own((table, ""), ("subjects =", f"temperature = {value}\nsubjects ="))
         with pytest.raises(InputError, match=rf"{re.escape(str(path))}: {reason}"):
             load_scenario(path)
@@ -302,6 +344,7 @@ def test_a_path_that_meets_itself_at_another_height_is_refused_with_its_file(own
 
 def test_a_name_that_is_nothing_is_refused_with_what_there_is():
     with pytest.raises(
-        InputError, match=r"scenario 'loop': neither a stock scenario \(closed-loop, .*\) nor"
+        InputError,
+        match=r"scenario 'loop': neither a stock .*; did you mean closed-loop or closed-loop-gentle\?",
     ):
         load_scenario("loop")

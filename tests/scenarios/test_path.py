@@ -179,13 +179,16 @@ def test_a_level_path_has_no_height_at_all():
 @pytest.mark.parametrize(
     ("elements", "message"),
     [
-        ([arc(1.4, 90)], r"path.elements.0.radius_m = 1.4: .* less than 1.5 m"),
-        ([straight(50), arc(1.0, 90), straight(50)], r"path.elements.1.radius_m = 1: .* less than 1.5 m"),
+        ([arc(1.4, 90)], r"path.elements no. 1, radius_m = 1.4: .* less than 1.5 m"),
+        (
+            [straight(50), arc(1.0, 90), straight(50)],
+            r"path.elements no. 2, radius_m = 1: .* 1.5 m",
+        ),
         (
             [straight(50), corner(90), straight(4.9), corner(90), straight(50)],
-            r"path.elements.2.length_m = 4.9: too short for its corners, which take 5.000 m",
+            r"path.elements no. 3, length_m = 4.9: too short for its corners, which take 5.000 m",
         ),
-        ([straight(1.0), corner(170)], r"path.elements.0.length_m = 1: too short"),
+        ([straight(1.0), corner(170)], r"path.elements no. 1, length_m = 1: too short"),
         ([straight(MAX_LENGTH_M), straight(1.0)], r"path.elements: 50001 m in all, expected 50000 m at most"),
         ([straight(50, 3.0)], r"begins with 0 m of level ground, expected 5 m at least"),
         ([straight(20), straight(50, 3.0), straight(4)], r"ends with 4 m of level ground, expected 5 m"),

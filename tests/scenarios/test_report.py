@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import re
 from dataclasses import asdict, replace
 
 import numpy as np
@@ -78,7 +79,8 @@ def test_tables_keep_every_figure_on_80_columns(walked, walks, methods):
     for name in results[0].scores:
         assert pair(mean_score([result.scores[name] for result in results])) in text
     # A line of improvements for each walk and the mean; one more each in the paper's own table.
-    assert sum("x / " in line for line in text.splitlines()) == 6 + (walks + 1) * (methods > 1)
+    gains = [line for line in text.splitlines() if re.search(r"x( better| worse)? /", line)]
+    assert len(gains) == 6 + (walks + 1) * (methods > 1)
 
 
 def test_many_methods_wrap_and_lose_nothing(walked):
@@ -96,8 +98,34 @@ def test_an_improvement_is_the_ratio_of_the_errors_and_of_the_means(walked):
         for i, line in enumerate(text.splitlines())
         if line.split()[:1] in (["1"], ["mean"]) and "/" in line
     ]
-    assert (first, gain) == ("11.5 / 10.5", "0.1x / 0.0x")
-    assert (mean, mean_gain) == ("26.5 / 25.5", f"{16.5 / 26.5:.1f}x / {15.5 / 25.5:.1f}x")
+    assert (first, gain) == ("11.5 / 10.5", f"{11.5 / 1.5:.1f}x / {10.5 / 0.5:.1f}x worse")
+    assert (mean, mean_gain) == ("26.5 / 25.5", f"{26.5 / 16.5:.1f}x / {25.5 / 15.5:.1f}x worse")
+
+
+@pytest.mark.parametrize(
+    ("final", "mean", "told"),
+    [
+        (2.0, 20.0, "5.0x better / 2.0x worse"),
+        (20.0, 2.0, "2.0x worse / 5.0x better"),
+        (20.0, 40.0, "2.0x / 4.0x worse"),
+        (10.4, 10.0, "1.0x / 1.0x"),
+    ],
+)
+def test_what_is_worse_than_uncorrected_is_called_so(walked, final, mean, told):
+    zeros = {"distance_error_pct": 0.0, "return_error_pct": 0.0}
+    zeros |= {"position_rmse_m": 0.0, "position_error_final_m": 0.0}
+    scores = {
+        "pdr": Score(heading_error_mean_deg=10.0, heading_error_final_deg=10.0, **zeros),
+        "hdr": Score(heading_error_mean_deg=mean, heading_error_final_deg=final, **zeros),
+    }
+    assert told in printed(*run_report("short", [replace(walked, scores=scores)]))
+
+
+def test_only_a_path_that_returns_has_a_return_error(walked):
+    there = printed(*run_report("x", [of_scenario(walked, load_scenario("straight"))]))
+    back = printed(*run_report("x", [of_scenario(walked, load_scenario("closed-loop"))]))
+    assert ("return" in back, " end " in back) == (True, False)
+    assert ("return" in there, " end " in there) == (False, True)
 
 
 def test_a_flawless_method_breaks_no_table(walked):
@@ -241,8 +269,6 @@ def test_small_causes_are_pooled_and_the_sum_is_the_sum(walked):
 
 def test_the_path_line_tells_length_and_closure():
     closed = path_line(load_scenario("closed-loop").path)
-    assert closed.startswith("Path of 1800.00 m, closed within ")
-    assert " mm on the ground" in closed
-    assert path_line(load_scenario("straight").path).endswith(
-        "open: it ends 1800.0 m from its start, +0.00 m higher"
-    )
+    assert closed == "The path is 1800 m long and ends where it starts"
+    level = "The path is 1800 m long and ends 1800.0 m from its start"
+    assert path_line(load_scenario("straight").path) == level

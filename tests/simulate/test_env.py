@@ -190,7 +190,7 @@ def test_what_make_is_told_holds_until_reset_is_told_otherwise() -> None:
     ("options", "culprit"),
     [
         ({"scenaro": "turning"}, r"option 'scenaro' is unknown, expected 'scenario' or 'subject'"),
-        ({"scenario": "nowhere"}, r"scenario 'nowhere': neither a stock scenario .*turning.* nor"),
+        ({"scenario": "nowhere"}, r"scenario 'nowhere': neither a stock scenario nor .*turning"),
         ({"scenario": 3}, r"option scenario = 3: expected None or a Plan, or a scenario's name or file"),
         ({"subject": "giant"}, r"option subject = 'giant': expected 'reference'.*'drawn' or a Subject"),
         ({"subject": 1.9}, r"option subject = 1.9: expected"),

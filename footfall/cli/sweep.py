@@ -1,0 +1,242 @@
+"""`footfall sweep`: a study of many trials, from its document to one table of rows."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from footfall.cli.options import JsonOption, SetOption
+from footfall.cli.terminal import ERR, INTERRUPTED, OUT, print_json, say
+from footfall.errors import InputError
+
+if TYPE_CHECKING:
+    from footfall.scenarios.studies.study import Study
+    from footfall.scenarios.studies.sweep import Progress
+
+RESUMABLE = 4  # exit code: stopped from outside of the study
+REASONS = 12  # that are printed
+_EVERY_S = 30.0  # a line where there is no terminal
+
+
+def sweep(
+    study: Annotated[
+        str,
+        typer.Argument(
+            help="Your study (TOML, docs/sweeps.md), one that comes with Footfall, or `list` to see those.",
+            show_default=False,
+        ),
+    ],
+    plan: Annotated[bool, typer.Option("--plan", help="Tell what it would cost, and do nothing.")] = False,
+    units: Annotated[
+        int | None, typer.Option(min=1, help="So many units; the study says if left out.")
+    ] = None,
+    walks: Annotated[
+        int | None, typer.Option(min=1, help="So many walks of each scenario; the study says if left out.")
+    ] = None,
+    settings: SetOption = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the results; out/STUDY if left out.", show_default=False)
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes at once; one a core if left out.", show_default=False)
+    ] = None,
+    retry_failed: Annotated[
+        bool, typer.Option("--retry-failed", help="Do again the tasks in which something failed.")
+    ] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Forget what was done before.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if any row failed.")] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Do a study: as many walks, units, sheets, settings and methods as it says; each gives a row of scores.
+
+    Start it again after whatever has ended it: what is done is not done again, and a changed study keeps the
+    parts that still belong to it. The folder gets results.parquet, study.json and tracks/.
+    """
+    from footfall.scenarios.parameters import parsed
+    from footfall.scenarios.studies.study import Study
+
+    if study == "list":
+        _list(as_json)
+        return
+    chosen = Study.read(study)
+    told = [f"footfall sweep {study}"]
+    if cases := {name: value for name, value in (("units", units), ("walks", walks)) if value is not None}:
+        chosen = chosen.of(**cases)
+        told += [f"--{name} {value}" for name, value in cases.items()]
+    if settings:
+        chosen = chosen.set(parsed(settings))
+        told += [f"--set '{setting}'" for setting in settings]
+    folder = out or Path("out") / chosen.name
+    if plan:
+        _plan(chosen, folder, workers, as_json)
+    else:
+        command = " ".join([*told, *([f"--out {out}"] if out else [])])
+        _sweep(
+            chosen, folder, workers, command, as_json=as_json, strict=strict, retry=retry_failed, fresh=fresh
+        )
+
+
+def _list(as_json: bool) -> None:
+    from footfall.scenarios.report.tables import new_table
+    from footfall.scenarios.studies.study import described, stock_studies
+
+    known = described(stock_studies())
+    if as_json:
+        print_json(known)
+        return
+    table = new_table("study", "what", left=2)
+    for name, text in known.items():
+        table.add_row(name, text)
+    OUT.print(table)
+
+
+def _plan(study: Study, folder: Path, workers: int | None, as_json: bool) -> None:
+    from footfall.scenarios.execute import cores
+    from footfall.scenarios.studies.describe import cost_line, headline
+    from footfall.scenarios.studies.parts import StudyFolder
+    from footfall.scenarios.studies.plan import cost_of, plan_of
+
+    with ERR.status("planning"):
+        made = plan_of(study)
+        left = cost_of(made, StudyFolder(folder).left(made.tasks))
+    if as_json:
+        print_json({"rows": made.rows, "left": left._asdict() | {"cores": workers or cores()}})
+        return
+    _line(headline(made))
+    _line(f"   {cost_line(left, workers or cores())}")
+
+
+def _sweep(
+    study: Study,
+    folder: Path,
+    workers: int | None,
+    command: str,
+    *,
+    as_json: bool,
+    strict: bool,
+    retry: bool,
+    fresh: bool,
+) -> None:
+    from footfall.scenarios.execute import cores
+    from footfall.scenarios.studies.describe import cost_line, headline
+    from footfall.scenarios.studies.parts import StudyFolder
+    from footfall.scenarios.studies.plan import cost_of, plan_of
+    from footfall.scenarios.studies.sweep import StoppedError
+    from footfall.scenarios.studies.sweep import sweep as perform
+
+    start = time.monotonic()
+    with ERR.status("planning"):
+        made = plan_of(study)
+        left = [] if fresh or retry else StudyFolder(folder).left(made.tasks)
+    say(headline(made))
+    if not (fresh or retry):
+        say(f"   {cost_line(cost_of(made, left), workers or cores())}")
+    with _stopping() as asked, _showing(study.name) as show:
+        keys = {"fresh": fresh, "retry_failed": retry, "command": command, "on_progress": show}
+        try:
+            *_, now = perform(made, folder, workers, stop=lambda: bool(asked), **keys)
+        except StoppedError as error:
+            say(f"footfall: stopped: {error}; start it again to go on")
+            raise typer.Exit(RESUMABLE) from None
+    for warning in now.warnings:
+        say(f"{folder}: {warning}")
+    if now.stage == "stopped":
+        say(f"{now.done:,} of {now.recordings:,} recordings are done; start it again to go on")
+        raise typer.Exit(INTERRUPTED)
+    _report(study, folder, command, time.monotonic() - start, as_json=as_json, strict=strict)
+
+
+def _report(study: Study, folder: Path, command: str, seconds: float, *, as_json: bool, strict: bool) -> None:
+    """Say what came of it, and refuse what came to nothing."""
+    from footfall.scenarios.studies.describe import duration, failures
+
+    rows = study.results(folder)
+    reasons = failures(rows)
+    lost = sum(count for count, _ in reasons)
+    if as_json:
+        told = [{"rows": count, "reason": reason} for count, reason in reasons]
+        about = {"name": study.name, "folder": str(folder), "seconds": round(seconds, 1)}
+        print_json(about | {"rows": len(rows), "failed": lost, "reasons": told})
+    else:
+        how = f"of which {lost:,} failed:" if lost else "none failed"
+        _line(f"Done in {duration(seconds)}: {len(rows):,} rows, {how}")
+        for count, reason in reasons[:REASONS]:
+            _line(f"  {count:,}  {reason}")
+        if len(reasons) > REASONS:
+            _line(f"  and {len(reasons) - REASONS:,} reasons more, in the column error")
+        _line(f"{folder / 'results.parquet'}")
+        _line(f"Again: {command}   (nothing is left to do)")
+    if lost == len(rows):
+        raise InputError(f"all {lost:,} rows failed, as: {reasons[0][1]}", study.source or study.name)
+    if strict and lost:
+        raise typer.Exit(1)
+
+
+def _line(text: str) -> None:
+    OUT.print(text, highlight=False, markup=False, soft_wrap=True)
+
+
+@contextmanager
+def _stopping() -> Iterator[list[int]]:
+    """A list that is empty until Ctrl-C or SIGTERM; the second one ends at once."""
+    asked: list[int] = []
+
+    def ask(number: int, frame: Any) -> None:
+        if asked:
+            raise KeyboardInterrupt
+        asked.append(number)
+        say("finishing the tasks in the making; once more ends at once")
+
+    before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield asked
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@contextmanager
+def _showing(name: str) -> Iterator[Any]:
+    """A bar on a terminal, or else a line now and then."""
+    from rich.progress import BarColumn, TaskProgressColumn, TextColumn
+    from rich.progress import Progress as Bars
+
+    start = last = time.monotonic()
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn("{task.fields[told]}"),
+    )
+    with Bars(*columns, console=ERR, transient=True, disable=not ERR.is_terminal) as bars:
+        bar = bars.add_task(name, total=1.0, told="")
+
+        def show(now: Progress) -> None:
+            nonlocal last
+            told = _told(now, time.monotonic() - start)
+            bars.update(bar, completed=now.share, description=now.stage, told=told)
+            if not ERR.is_terminal and time.monotonic() - last >= _EVERY_S:
+                last = time.monotonic()
+                say(f"{name}: {now.share:.0%}, {now.stage}, {told}")
+
+        yield show
+
+
+def _told(now: Progress, seconds: float) -> str:
+    told = [f"{now.done:,} of {now.recordings:,} recordings"]
+    if now.route:
+        told.append(f"{now.metres:,.0f} of {now.route:,.0f} m walked")
+    if seconds > 1 and now.share > 0.01:
+        left = round(seconds * (1 - now.share) / now.share)
+        if now.rows:
+            told.append(f"{now.rows / seconds:.1f} rows/s")
+        told.append(f"{left // 60}:{left % 60:02d} left")
+    if now.failed:
+        told.append(f"{now.failed:,} failed rows")
+    return ", ".join(told)
