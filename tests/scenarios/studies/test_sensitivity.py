@@ -85,7 +85,6 @@ def test_both_fidelities_agree_on_dead_reckoning(file):
     ratio = np.log(budget.points[0].scores / full.points[0].scores)
     assert np.abs(ratio).mean() < 0.15
     assert np.corrcoef(np.log([budget.points[0].scores, full.points[0].scores]))[0, 1] > 0.9
-    assert budget.sobol.total[0].value > budget.sobol.total[1].value
 
 
 def test_the_unit_as_a_factor(file):
