@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -13,11 +14,12 @@ from footfall.cli.terminal import ERR, OUT, print_json, say
 
 def sensitivity(
     study: Annotated[
-        str | None,
+        str,
         typer.Argument(
-            help="A study that comes with Footfall, or your TOML file; if left out, those that come with it."
+            help="Your study (docs/sensitivity.md), one that comes with Footfall, or `list` to see those.",
+            show_default=False,
         ),
-    ] = None,
+    ],
     fidelity: Annotated[
         str | None,
         typer.Option(help="full: the whole chain; budget: by the drift budget; the study says if left out."),
@@ -34,8 +36,6 @@ def sensitivity(
 
     The folder gets sensitivity.json, points.parquet and the figures (PNG). Needs footfall[study].
     """
-    import sys
-
     from footfall.scenarios.report.progress import counting, showing
     from footfall.scenarios.report.results import results_folder
     from footfall.scenarios.report.sensitivity import (
@@ -49,11 +49,12 @@ def sensitivity(
     from footfall.scenarios.studies.sensitivity import Watch, perform_study
     from footfall.scenarios.studies.sensitivity_file import read_study, stock_studies
 
-    if study is None:
-        table = new_table("study", "question")
-        for name in stock_studies():
-            table.add_row(name, read_study(name).file.description)
-        OUT.print(table)
+    if study == "list":
+        known = {name: read_study(name).file.description for name in stock_studies()}
+        table = new_table("study", "question", left=2)
+        for row in known.items():
+            table.add_row(*row)
+        print_json(known) if as_json else OUT.print(table)
         return
     needed("SALib.sample.sobol")
     asked = read_study(study, {} if fidelity is None else {"fidelity": fidelity})
@@ -68,7 +69,8 @@ def sensitivity(
                 on_check=lambda check: ERR.print(check_report(asked, check)),
             )
             found = perform_study(asked, watch)
-        document = sensitivity_document(found, " ".join(["footfall", *sys.argv[1:]]))
+        words = ["footfall", "sensitivity", study, *([] if fidelity is None else ["--fidelity", fidelity])]
+        document = sensitivity_document(found, shlex.join(words))
         with ERR.status("writing files and figures"):
             write_sensitivity(found, document, folder)
     if as_json:

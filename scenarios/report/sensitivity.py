@@ -13,6 +13,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from footfall.late import late
+from footfall.scenarios.judge.gate import unit_of
 from footfall.scenarios.report.style import label_of
 from footfall.scenarios.report.tables import new_table, titled
 from footfall.scenarios.studies.check import LIMIT, Check
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 pa, pq = late("pyarrow"), late("pyarrow.parquet")
 
 FORMAT = "footfall sensitivity 1"
-UNITS = {"_deg": "deg", "_pct": "%", "_m": "m"}
 WORDS = {
     "heading_error_mean_deg": "mean heading error",
     "heading_error_final_deg": "final heading error",
@@ -38,11 +38,6 @@ WORDS = {
     "position_error_final_m": "final position error",
 }
 _BAR = 20  # characters of an index of 1
-
-
-def unit_of(metric: str) -> str:
-    """The unit of a figure of `Score`."""
-    return next(unit for ending, unit in UNITS.items() if metric.endswith(ending))
 
 
 def asked(study: Study) -> str:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from footfall.scenarios.report.sensitivity import asked, order_of, unit_of
+from footfall.scenarios.judge.gate import unit_of
+from footfall.scenarios.report.sensitivity import asked, order_of
 from footfall.scenarios.report.style import MORE, entitle, label_edges, new_figure, new_panels, save
 from footfall.scenarios.studies.factors import Factor
 from footfall.scenarios.studies.sensitivity import Found, Points

@@ -19,7 +19,8 @@ from footfall.errors import InputError
 from footfall.hdr.method import Method
 from footfall.scenarios.evaluate import cases
 from footfall.scenarios.execute import Progress, execute
-from footfall.scenarios.judge.score import Score
+from footfall.scenarios.judge.bounds import quantile
+from footfall.scenarios.judge.gate import METRICS
 from footfall.scenarios.parameters import Documents, with_values
 from footfall.scenarios.studies.factors import Factor
 from footfall.scenarios.trial import Setup, Trial
@@ -29,7 +30,6 @@ from footfall.toml import Strict
 Over = Literal["median", "mean", "p90"]
 
 TOGETHER = 50  # methods of one trial: so many tracks of a recording before the next progress
-_FLOORS = {"_deg": 0.01, "_m": 0.01, "_pct": 0.01}  # less than that is no error, and has a logarithm
 
 
 class CasesTable(Strict):
@@ -61,8 +61,8 @@ def require_metric(name: str) -> str:
     InputError
         There is none of that name.
     """
-    if name not in Score.__dataclass_fields__:
-        raise InputError(f"metric = {name!r}: unknown{did_you_mean(name, Score.__dataclass_fields__)}")
+    if name not in METRICS:
+        raise InputError(f"metric = {name!r}: unknown{did_you_mean(name, METRICS)}")
     return name
 
 
@@ -171,20 +171,8 @@ def over_cases(errors: np.ndarray, over: Over) -> np.ndarray:
     """Median, mean or 90th percentile (p,) of errors (p, c); infinite ones rank last."""
     if over == "mean":
         return np.asarray(errors.mean(axis=1))
-    place = {"median": 0.5, "p90": 0.9}[over] * (errors.shape[1] - 1)
-    low = int(place)
-    ranked = np.sort(errors, axis=1)
-    if place == low:
-        return np.asarray(ranked[:, low])
-    with np.errstate(invalid="ignore"):  # of two infinite ones
-        between = ranked[:, low] + (place - low) * (ranked[:, low + 1] - ranked[:, low])
-    return np.where(np.isinf(ranked[:, low + 1]), np.inf, between)
-
-
-def floored(values: np.ndarray, metric: str) -> np.ndarray:
-    """Values of a metric that are at least so large that a ratio of two means something."""
-    floor = next((size for ending, size in _FLOORS.items() if metric.endswith(ending)), 0.0)
-    return np.maximum(values, floor)
+    share = {"median": 0.5, "p90": 0.9}[over]
+    return np.array([quantile(row, share) for row in errors])
 
 
 def require_finite(

@@ -11,11 +11,12 @@ import numpy as np
 
 from footfall.errors import InputError
 from footfall.scenarios.execute import Progress
+from footfall.scenarios.judge.gate import floor_of
 from footfall.scenarios.studies.budget import Case, Surrogate
 from footfall.scenarios.studies.check import Check, check_points
 from footfall.scenarios.studies.indices import Screened, Sobol, morris, morris_design, sobol_until
 from footfall.scenarios.studies.listening import Lost, listened
-from footfall.scenarios.studies.points import evaluate_points, floored, over_cases, require_finite
+from footfall.scenarios.studies.points import evaluate_points, over_cases, require_finite
 from footfall.scenarios.studies.sensitivity_file import UNIT, Study
 
 Evaluate = Callable[[np.ndarray], np.ndarray]  # shares (p, factors) of the ranges -> scores (p,)
@@ -143,7 +144,7 @@ def _found(study: Study, evaluate: Evaluate, nominal: float, check: Check | None
 
 def transformed(study: Study, scores: np.ndarray) -> np.ndarray:
     """What the indices are of: the score's logarithm where ratios count, else the score itself."""
-    return np.log(floored(scores, study.file.metric)) if study.file.of == "ratio" else scores
+    return np.log(np.maximum(scores, floor_of(study.file.metric))) if study.file.of == "ratio" else scores
 
 
 def _full(study: Study, watch: Watch) -> Evaluate:

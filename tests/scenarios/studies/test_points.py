@@ -10,7 +10,6 @@ from footfall.scenarios.studies.factors import Factor
 from footfall.scenarios.studies.points import (
     CasesTable,
     evaluate_points,
-    floored,
     over_cases,
     require_allowed,
     require_finite,
@@ -99,11 +98,6 @@ def test_a_median_bears_half_of_the_cases_and_no_more():
     errors[0, :11] = 1.0
     errors[1, :10] = 1.0
     np.testing.assert_array_equal(over_cases(errors, "median"), [1.0, np.inf])
-
-
-def test_what_is_next_to_nothing_has_a_floor():
-    np.testing.assert_array_equal(floored(np.array([0.0, 3.0]), METRIC), [0.01, 3.0])
-    np.testing.assert_array_equal(floored(np.array([0.0, 3.0]), "position_rmse_m"), [0.01, 3.0])
 
 
 def test_the_corner_that_fails_is_named():

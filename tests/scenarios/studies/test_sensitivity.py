@@ -149,11 +149,10 @@ def test_a_study_asks_something_of_several_parameters(file):
         read_study(str(file))
 
 
-def test_without_a_name_the_stock_studies_are_listed(cli):
-    code, printed, _ = cli("sensitivity")
+def test_the_stock_studies_are_listed(cli):
+    code, printed, _ = cli("sensitivity list --json")
     assert code == 0
-    for name in stock_studies():
-        assert name in printed
+    assert set(json.loads(printed)) == set(stock_studies())
 
 
 def test_no_such_study(cli):
