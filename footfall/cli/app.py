@@ -20,6 +20,7 @@ from footfall.cli.check import check
 from footfall.cli.export import export
 from footfall.cli.gate import gate
 from footfall.cli.list import list_
+from footfall.cli.map import map_
 from footfall.cli.parameters import parameters
 from footfall.cli.record import record
 from footfall.cli.render import render
@@ -70,6 +71,7 @@ COMMANDS = (
     sweep,
     gate,
     sensitivity,
+    map_,
     export,
     allan,
 )

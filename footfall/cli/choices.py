@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -60,3 +61,35 @@ def told_directions(
         names = ", ".join(method.name for method in methods)
         raise InputError(f"--directions and --reference: none of {names} goes by dominant directions")
     return values
+
+
+def number_range(text: str) -> tuple[float, float]:
+    """`FROM..TO` as numbers.
+
+    Raises
+    ------
+    InputError
+        It is not written so, or is no range.
+    """
+    low, dots, high = text.partition("..")
+    try:
+        found = float(low), float(high)
+    except ValueError:
+        found = (math.nan, math.nan)
+    if not dots or not all(map(math.isfinite, found)) or found[0] >= found[1]:
+        raise InputError(f"{text!r}: expected FROM..TO, as 0.1..1.0")
+    return found
+
+
+def unit_range(text: str) -> tuple[int, int]:
+    """`FROM..TO` as the first unit's seed and how many units there are.
+
+    Raises
+    ------
+    InputError
+        It is not written so, or is no range.
+    """
+    first, dots, last = text.partition("..")
+    if not (dots and first.isdecimal() and last.isdecimal() and int(first) <= int(last)):
+        raise InputError(f"{text!r}: expected the seeds of units FROM..TO, as 1000..1044")
+    return int(first), int(last) - int(first) + 1

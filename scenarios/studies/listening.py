@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import groupby
 
+import numpy as np
+
 from footfall.errors import InputError
+from footfall.hdr.method import Method
+from footfall.models.imu import ImuSpec
 from footfall.scenarios.execute import CHUNK, cores, worker_pool
-from footfall.scenarios.studies.budget import Case, case_of
+from footfall.scenarios.studies.budget import Case, Surrogate, case_of
 from footfall.scenarios.trial import Trial, walk_of
 from footfall.scenarios.warm import warm
 
@@ -66,3 +70,36 @@ def _job(trials: Sequence[Trial]) -> list[Case | Lost]:
         except InputError as error:
             found.append((trial, str(error)))
     return found
+
+
+class Heard:
+    """The surrogate over cases some of which came to no end: those have infinite errors.
+
+    Parameters
+    ----------
+    heard : of `listened`; the others as of `Surrogate`
+
+    Raises
+    ------
+    InputError
+        As `Surrogate`.
+    """
+
+    def __init__(
+        self,
+        heard: Sequence[Case | Lost],
+        spec: ImuSpec,
+        method: Method,
+        addresses: Sequence[str],
+        metric: str,
+    ) -> None:
+        self._there = np.array([isinstance(one, Case) for one in heard], dtype=bool)
+        cases = [one for one in heard if isinstance(one, Case)]
+        self._model = Surrogate(cases, spec, method, addresses, metric)
+
+    def __call__(self, points: np.ndarray) -> np.ndarray:
+        """Errors (p, cases) in deg at points (p, addresses)."""
+        errors = np.full((len(points), len(self._there)), np.inf)
+        if self._there.any():
+            errors[:, self._there] = self._model(points)
+        return errors

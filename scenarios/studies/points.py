@@ -10,10 +10,9 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal, cast, get_args
 
 import numpy as np
-from pydantic import Field
 
 from footfall.errors import InputError
 from footfall.hdr.method import Method
@@ -23,26 +22,21 @@ from footfall.scenarios.judge.bounds import quantile
 from footfall.scenarios.judge.gate import METRICS
 from footfall.scenarios.parameters import Documents, with_values
 from footfall.scenarios.studies.factors import Factor
+from footfall.scenarios.studies.study import CasesTable
 from footfall.scenarios.trial import Setup, Trial
 from footfall.settings import did_you_mean
-from footfall.toml import Strict
 
 Over = Literal["median", "mean", "p90"]
 
 TOGETHER = 50  # methods of one trial: so many tracks of a recording before the next progress
 
 
-class CasesTable(Strict):
-    """Who wears what on which walk, the same at every point: as of `footfall.scenarios.evaluate.cases`."""
-
-    walks: Annotated[int, Field(ge=1)] | None = None
-    units: Annotated[int, Field(ge=1)] = 20
-    seed: Annotated[int, Field(ge=0)] | None = None
-    crossed: bool = False
+class Worn(CasesTable):
+    """Who wears what on which walk, the same at every point."""
 
     def deal(self, setup: Setup) -> list[Trial]:
         """The trials of a setup."""
-        return cases(setup, units=self.units, walks=self.walks, seed=self.seed, crossed=self.crossed)
+        return cases(setup, **self.model_dump())
 
 
 @dataclass(frozen=True)
@@ -64,6 +58,19 @@ def require_metric(name: str) -> str:
     if name not in METRICS:
         raise InputError(f"metric = {name!r}: unknown{did_you_mean(name, METRICS)}")
     return name
+
+
+def require_over(name: str) -> Over:
+    """What many cases come to, by its name.
+
+    Raises
+    ------
+    InputError
+        There is none of that name.
+    """
+    if name not in get_args(Over):
+        raise InputError(f"over = {name!r}: expected one of {', '.join(get_args(Over))}")
+    return cast(Over, name)
 
 
 def require_allowed(base: Documents, factors: Sequence[Factor]) -> None:

@@ -12,10 +12,10 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.scenarios.execute import Progress
 from footfall.scenarios.judge.gate import floor_of
-from footfall.scenarios.studies.budget import Case, Surrogate
+from footfall.scenarios.studies.budget import Case
 from footfall.scenarios.studies.check import Check, check_points
 from footfall.scenarios.studies.indices import Screened, Sobol, morris, morris_design, sobol_until
-from footfall.scenarios.studies.listening import Lost, listened
+from footfall.scenarios.studies.listening import Heard, Lost, listened
 from footfall.scenarios.studies.points import evaluate_points, over_cases, require_finite
 from footfall.scenarios.studies.sensitivity_file import UNIT, Study
 
@@ -108,7 +108,7 @@ def perform_study(study: Study, watch: Watch | None = None) -> Found:
     check = Check(shares, full(shares), budget(shares))
     watch.on_check(check)
     check.require()
-    known = _Columns(study, heard, ())(np.empty((1, 0)))
+    known = _heard(study, heard, ())(np.empty((1, 0)))
     return _found(study, budget, float(over_cases(known, study.file.over)[0]), check)
 
 
@@ -188,10 +188,10 @@ def _budget(study: Study, watch: Watch) -> tuple[Sequence[Case | Lost], Evaluate
     if listed is not None:
         raise InputError('the budget takes ranges, no lists: use fidelity = "full"', listed.address)
     addresses = [factor.address for factor in study.varied]
-    _Columns(study, (), addresses)  # refused before anything is walked
+    _heard(study, (), addresses)  # refused before anything is walked
     trials = study.file.cases.deal(study.base.setup())
     heard = listened(trials, workers=watch.workers, on_progress=watch.on_cases)
-    model = _Columns(study, heard, addresses)
+    model = _heard(study, heard, addresses)
     reasons = {one[1]: 1 for one in heard if not isinstance(one, Case)}
     if len(reasons) and not any(isinstance(one, Case) for one in heard):
         raise InputError(f"no case came to its end: {next(iter(reasons))}")
@@ -209,16 +209,6 @@ def _budget(study: Study, watch: Watch) -> tuple[Sequence[Case | Lost], Evaluate
     return heard, evaluate
 
 
-class _Columns:
-    """Errors (p, cases) of the surrogate; a case that came to no end has infinite ones."""
-
-    def __init__(self, study: Study, heard: Sequence[Case | Lost], addresses: Sequence[str]) -> None:
-        setup = study.base.setup()
-        cases = [case for case in heard if isinstance(case, Case)]
-        self._there = np.array([isinstance(case, Case) for case in heard], dtype=bool)
-        self._model = Surrogate(cases, setup.spec, setup.methods[0], addresses, study.file.metric)
-
-    def __call__(self, points: np.ndarray) -> np.ndarray:
-        errors = np.full((len(points), len(self._there)), np.inf)
-        errors[:, self._there] = self._model(points)
-        return errors
+def _heard(study: Study, heard: Sequence[Case | Lost], addresses: Sequence[str]) -> Heard:
+    setup = study.base.setup()
+    return Heard(heard, setup.spec, setup.methods[0], addresses, study.file.metric)

@@ -14,7 +14,7 @@ from footfall.addresses import pattern
 from footfall.errors import InputError
 from footfall.scenarios.parameters import Documents, documents, parameters, with_values
 from footfall.scenarios.studies.factors import Factor, FactorTable, factors_of, points_at
-from footfall.scenarios.studies.points import CasesTable, Over, require_allowed, require_metric
+from footfall.scenarios.studies.points import Over, Worn, require_allowed, require_metric
 from footfall.toml import Strict, checked, parse_toml
 
 FOLDER = Path(__file__).resolve().parent / "stock" / "sensitivity"  # of the studies that come with Footfall
@@ -53,7 +53,7 @@ class SensitivityFile(Strict):
     fidelity: Fidelity = "full"
     units_as_factor: bool = False
     seed: Annotated[int, Field(ge=0)] = 1
-    cases: CasesTable = CasesTable()
+    cases: Worn = Worn()
     set: dict[str, Any] = Field(default_factory=dict)
     parameters: dict[str, FactorTable]
     morris: MorrisTable | None = None

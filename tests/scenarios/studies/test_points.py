@@ -8,7 +8,7 @@ from footfall.scenarios.parameters import documents, with_values
 from footfall.scenarios.studies import points as studied
 from footfall.scenarios.studies.factors import Factor
 from footfall.scenarios.studies.points import (
-    CasesTable,
+    Worn,
     evaluate_points,
     over_cases,
     require_allowed,
@@ -29,14 +29,14 @@ def base(workshop):
 def by_hand(base, point, units=2):
     setup = with_values(base, point).setup()
     found = []
-    for trial in CasesTable(walks=1, units=units).deal(setup):
+    for trial in Worn(walks=1, units=units).deal(setup):
         found.append(perform(trial, walk_of(trial)).rows[0].require().heading_error_mean_deg)
     return found
 
 
 def test_points_are_what_the_chain_gives_one_by_one(base):
     points = [{FLICKER: 300.0, TAU: 4.0}, {}, {TAU: 12.0}, {FLICKER: 300.0, TAU: 4.0}, {FLICKER: 300.0}]
-    found = evaluate_points(base, points, CasesTable(walks=1, units=2).deal, METRIC, workers=1)
+    found = evaluate_points(base, points, Worn(walks=1, units=2).deal, METRIC, workers=1)
     np.testing.assert_array_equal(found.errors, [by_hand(base, point) for point in points])
     assert found.failures == {}
     assert len(np.unique(found.errors)) == 8
@@ -53,7 +53,7 @@ def test_what_differs_in_the_method_alone_is_recorded_once(base, monkeypatch):
     monkeypatch.setattr(studied, "TOGETHER", 3)
     points = [{TAU: float(tau)} for tau in range(1, 6)] + [{FLICKER: 9.0}, {TAU: 1.0}]
     with pytest.raises(ValueError, match="longer"):
-        evaluate_points(base, points, CasesTable(walks=1, units=2).deal, METRIC)
+        evaluate_points(base, points, Worn(walks=1, units=2).deal, METRIC)
     assert [len(trial.setup.methods) for trial in seen] == [3, 3, 2, 2, 1, 1]
     assert [method.params.tau_s for method in seen[0].setup.methods] == [1.0, 2.0, 3.0]
     assert len({id(trial.setup.scenario) for trial in seen}) == 1
@@ -61,7 +61,7 @@ def test_what_differs_in_the_method_alone_is_recorded_once(base, monkeypatch):
 
 def test_each_point_may_have_a_case_of_its_own(base):
     points = [{TAU: 5.0}, {TAU: 5.0}, {}]
-    deal = CasesTable(walks=1, units=2).deal
+    deal = Worn(walks=1, units=2).deal
     found = evaluate_points(base, points, deal, METRIC, which=np.array([1, 0, 1]), workers=1)
     five, own = by_hand(base, {TAU: 5.0}), by_hand(base, {})
     np.testing.assert_array_equal(found.errors, [[five[1]], [five[0]], [own[1]]])
@@ -69,7 +69,7 @@ def test_each_point_may_have_a_case_of_its_own(base):
 
 def test_a_case_that_fails_is_infinite_and_tells_why(base):
     refused = {"pdr.bias_s": 100.0}
-    found = evaluate_points(base, [{}, refused], CasesTable(walks=1, units=2).deal, METRIC, workers=1)
+    found = evaluate_points(base, [{}, refused], Worn(walks=1, units=2).deal, METRIC, workers=1)
     assert np.isfinite(found.errors[0]).all()
     assert np.isinf(found.errors[1]).all()
     ((reason, count),) = found.failures.items()
@@ -78,7 +78,7 @@ def test_a_case_that_fails_is_infinite_and_tells_why(base):
 
 
 def test_signed_errors_count_by_their_size(base):
-    found = evaluate_points(base, [{}], CasesTable(walks=1, units=2).deal, "distance_error_pct", workers=1)
+    found = evaluate_points(base, [{}], Worn(walks=1, units=2).deal, "distance_error_pct", workers=1)
     assert (found.errors > 0).all()
 
 
