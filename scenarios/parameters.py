@@ -34,6 +34,7 @@ from footfall.scenarios.scenario import (
 )
 from footfall.scenarios.trial import DEFAULT_METHODS, Setup, find, setup
 from footfall.settings import changed, did_you_mean, kind_of, leaves
+from footfall.toml import parse_toml
 
 STAGES = ("walk", "record", "reckon", "track")  # in the order of the data; a stage repeats all after it
 
@@ -133,13 +134,21 @@ def documents(
 def parsed(settings: Iterable[str]) -> dict[str, Any]:
     """`ADDRESS=VALUE` texts as address -> value; a value is written as in TOML, text may go without quotes.
 
+    `@FILE` stands for all of the table `[set]` of a TOML file, as `footfall tune` writes it.
+
     Raises
     ------
     InputError
-        No "=", or an address twice.
+        No "=", an address twice, or a file that has no such table.
     """
     found: dict[str, Any] = {}
     for setting in settings:
+        if setting.startswith("@"):
+            for address, value in _file_of_values(setting[1:]).items():
+                if address in found:
+                    raise InputError(f"--set {setting}: {address} is given twice")
+                found[address] = value
+            continue
         # An "=" in brackets chooses an element.
         match = re.fullmatch(r"((?:[^=\[]|\[[^\]]*\])+)=(.*)", setting, flags=re.DOTALL)
         if match is None:
@@ -152,6 +161,13 @@ def parsed(settings: Iterable[str]) -> dict[str, Any]:
         except tomllib.TOMLDecodeError:
             found[address] = text
     return found
+
+
+def _file_of_values(name: str) -> dict[str, Any]:
+    values = parse_toml(name).get("set")
+    if not isinstance(values, dict) or any(isinstance(value, dict) for value in values.values()):
+        raise InputError('expected a table [set] of "ADDRESS" = VALUE', name)
+    return values
 
 
 def with_values(base: Documents, values: Mapping[str, Any]) -> Documents:

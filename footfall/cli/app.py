@@ -30,6 +30,7 @@ from footfall.cli.sensitivity import sensitivity
 from footfall.cli.sweep import sweep
 from footfall.cli.terminal import perform
 from footfall.cli.track import track
+from footfall.cli.tune import tune
 from footfall.cli.walk import walk
 
 app = typer.Typer(
@@ -72,6 +73,7 @@ COMMANDS = (
     gate,
     sensitivity,
     map_,
+    tune,
     export,
     allan,
 )

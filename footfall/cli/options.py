@@ -41,7 +41,8 @@ SetOption = Annotated[
     typer.Option(
         "--set",
         metavar="ADDRESS=VALUE",
-        help="Another value for a parameter (see `footfall parameters`); may be repeated.",
+        help="Another value for a parameter (see `footfall parameters`), or @FILE for the table [set] of a "
+        "TOML file; may be repeated.",
         show_default=False,
     ),
 ]

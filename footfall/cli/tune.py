@@ -1,0 +1,95 @@
+"""`footfall tune`: parameters chosen on some walks and units, and judged on others."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from footfall.cli.options import JsonOption
+from footfall.cli.terminal import ERR, OUT, print_json, say
+
+
+def tune(
+    study: Annotated[
+        str,
+        typer.Argument(
+            help="Your study (docs/tuning.md), one that comes with Footfall, or `list` to see those.",
+            show_default=False,
+        ),
+    ],
+    method: Annotated[
+        str | None, typer.Option(help="Method to tune; the study says if left out.", show_default=False)
+    ] = None,
+    train: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FROM..TO", help="Units to tune with; the study says if left out.", show_default=False
+        ),
+    ] = None,
+    test: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FROM..TO", help="Units to judge with; the study says if left out.", show_default=False
+        ),
+    ] = None,
+    trials: Annotated[
+        int | None, typer.Option(min=2, help="Parameter sets to try; the study says if left out.")
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes; one a core if left out.", show_default=False)
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the results; out/STUDY if left out.", show_default=False)
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Tune a method's parameters on some walks and units, and judge them on others beside the default.
+
+    The folder gets tuning.json, tuning.png and tuned.toml, which `--set @tuned.toml` takes. HDR is mapped;
+    other methods need footfall[study].
+    """
+    from footfall.cli.choices import unit_range
+    from footfall.scenarios.report.progress import counting, showing
+    from footfall.scenarios.report.results import results_folder
+    from footfall.scenarios.report.tables import new_table
+    from footfall.scenarios.report.tuning import tuning_document, tuning_report, write_tuning
+    from footfall.scenarios.studies.tuning import perform_tuning
+    from footfall.scenarios.studies.tuning_file import read_tuning, stock_tunings
+
+    if study == "list":
+        known = {name: read_tuning(name).file.description for name in stock_tunings()}
+        table = new_table("study", "what", left=2)
+        for row in known.items():
+            table.add_row(*row)
+        print_json(known) if as_json else OUT.print(table)
+        return
+    changes: dict[str, Any] = {}
+    words = ["footfall", "tune", study]
+    for key, value in (("method", method), ("trials", trials)):
+        if value is not None:
+            changes[key] = value
+            words += [f"--{key}", str(value)]
+    for key, text in (("train", train), ("test", test)):
+        if text is not None:
+            first, count = unit_range(text)
+            changes[key] = {"first_unit": first, "units": count}
+            words += [f"--{key}", text]
+    asked = read_tuning(study, changes)
+    folder = out or Path("out") / asked.name
+    with results_folder(folder):
+        with counting("units heard") as heard, counting("sets tried") as tried, showing() as shown:
+            tuned = perform_tuning(
+                asked, workers=workers, folder=folder, on_cases=heard, on_trials=shown, on_tried=tried
+            )
+        document = tuning_document(tuned, shlex.join(words))
+        with ERR.status("writing files and the figure"):
+            write_tuning(tuned, document, folder)
+    if as_json:
+        print_json(document)
+    else:
+        for part in tuning_report(tuned):
+            OUT.print(part)
+    say(f"Figures and values are in {folder}; take them with --set @{folder / 'tuned.toml'}")
