@@ -17,8 +17,9 @@ from footfall.scenarios.judge.gate import unit_of
 from footfall.scenarios.report.style import label_of
 from footfall.scenarios.report.tables import new_table, titled
 from footfall.scenarios.studies.check import LIMIT, Check
-from footfall.scenarios.studies.indices import Index, not_told_apart
-from footfall.scenarios.studies.sensitivity import Found
+from footfall.scenarios.studies.factors import Factor
+from footfall.scenarios.studies.indices import Index, Screened, Sobol, not_told_apart
+from footfall.scenarios.studies.sensitivity import Answer, Found
 from footfall.scenarios.studies.sensitivity_file import Study
 from footfall.simulate.plan import versions
 from footfall.tables import replacing
@@ -45,9 +46,10 @@ def asked(study: Study) -> str:
     file = study.file
     cases = len(file.cases.deal(study.base.setup()))
     over = "each unit by itself" if file.units_as_factor else f"{file.over} over {cases} units"
-    (method,) = study.base.methods
+    methods = " and ".join(label_of(method.name) for method in study.base.methods[:2])
+    methods = methods if len(study.base.methods) <= 2 else f"{len(study.base.methods)} methods"
     what = ", as a ratio" if file.of == "ratio" else ""
-    return f"{WORDS[file.metric]} of {label_of(method.name)} on {file.scenario}, {over}{what}"
+    return f"{WORDS[file.metric]} of {methods} on {file.scenario}, {over}{what}"
 
 
 def check_report(study: Study, check: Check) -> RenderableType:
@@ -58,40 +60,40 @@ def check_report(study: Study, check: Check) -> RenderableType:
         table.add_row(str(i + 1), f"{full:.3g}", f"{budget:.3g}", f"{100 * off:+.0f} %")
     verdict = "good for means and ranks" if check.mean_off <= LIMIT else "do not use"
     table.add_row("mean size", "", "", f"{100 * check.mean_off:.0f} %: {verdict}", style="bold")
-    return titled("The budget beside the full chain, at points of their own", table)
+    return titled(f"{check.method}: the budget beside the full chain, at points of their own", table)
 
 
 def sensitivity_report(found: Found) -> list[RenderableType]:
     """What `footfall sensitivity` prints for people."""
-    study, unit = found.study, unit_of(found.study.file.metric)
-    parts: list[RenderableType] = [
-        Text.assemble((study.name, "bold"), f": {asked(study)}"),
-        Text(f"At the documents' own values: {found.nominal:.3g} {unit}\n", style="dim"),
-    ]
-    if found.morris is not None:
-        parts.append(titled(f"Morris: mean size of an effect over a whole range{_in(study)}", _morris(found)))
-    if found.sobol is not None:
-        samples = found.sobol.samples
-        points = samples * (len(study.factors) + 2)
-        parts.append(titled(f"Sobol: shares of the variance, N = {samples}, {points} points", _sobol(found)))
-        parts.append(_convergence(found))
-        parts.append(Text("\n".join(remarks(found))))
+    study = found.study
+    unit = unit_of(study.file.metric)
+    parts: list[RenderableType] = [Text.assemble((study.name, "bold"), f": {asked(study)}\n")]
+    for one in found.answers:
+        head = f"{one.method}: at the documents' own values {one.nominal:.3g} {unit}"
+        parts.append(Text(head, style="bold"))
+        if one.morris is not None:
+            title = f"Morris: mean size of an effect over a whole range{_in(study)}"
+            parts.append(titled(title, _morris(study.factors, one.morris)))
+        if one.sobol is not None:
+            points = one.sobol.samples * (len(study.factors) + 2)
+            title = f"Sobol: shares of the variance, N = {one.sobol.samples}, {points} points"
+            parts.append(titled(title, _sobol(study.factors, one.sobol)))
+            parts.append(_convergence(study.factors, one.convergence))
+            parts.append(Text("\n".join(remarks(study, one.sobol)) + "\n"))
+    if len(found.answers) > 1:
+        parts.append(_side_by_side(found))
     return parts
 
 
-def remarks(found: Found) -> list[str]:
-    """What is to be said of the indices besides."""
-    sobol = found.sobol
-    assert sobol is not None
-    told = [
-        f"interplay: the total indices add up to {1 + sobol.interplay:.2f}, {sobol.interplay:+.2f} from 1"
-    ]
+def remarks(study: Study, sobol: Sobol) -> list[str]:
+    """What is to be said of indices besides."""
+    told = [f"interplay: {sobol.interplay:+.2f}, by which the total indices add up to more than 1"]
     for group in not_told_apart(sobol.total):
-        told.append(f"not told apart: {', '.join(found.study.factors[i].name for i in group)}")
-    asked_for = found.study.file.sobol
-    if asked_for is not None and sobol.widest > asked_for.widest:
+        told.append(f"not told apart: {', '.join(study.factors[i].name for i in group)}")
+    wanted = study.file.sobol
+    if wanted is not None and sobol.widest > wanted.widest:
         told.append(
-            f"not converged: the widest interval is +-{sobol.widest:.2f}, asked for +-{asked_for.widest:g}; "
+            f"not converged: the widest interval is +-{sobol.widest:.2f}, asked for +-{wanted.widest:g}; "
             f"raise sobol.at_most"
         )
     return told
@@ -101,12 +103,11 @@ def _in(study: Study) -> str:
     return " (factor e^mu*)" if study.file.of == "ratio" else f" ({unit_of(study.file.metric)})"
 
 
-def _morris(found: Found) -> Table:
-    assert found.morris is not None
+def _morris(factors: Sequence[Factor], found: Sequence[Screened]) -> Table:
     table = new_table("parameter", "mu*", "+-", "sigma")
-    for i in sorted(range(len(found.morris)), key=lambda i: -found.morris[i].mu_star):  # type: ignore[index]
-        one = found.morris[i]
-        table.add_row(found.study.factors[i].name, *(f"{v:.3g}" for v in (one.mu_star, one.half, one.sigma)))
+    for i in sorted(range(len(found)), key=lambda i: -found[i].mu_star):
+        figures = (found[i].mu_star, found[i].half, found[i].sigma)
+        table.add_row(factors[i].name, *(f"{value:.3g}" for value in figures))
     return table
 
 
@@ -115,26 +116,50 @@ def order_of(indices: Sequence[Index]) -> list[int]:
     return sorted(range(len(indices)), key=lambda i: -indices[i].value)
 
 
-def _sobol(found: Found) -> Table:
-    assert found.sobol is not None
+def _sobol(factors: Sequence[Factor], found: Sobol) -> Table:
     table = new_table("parameter", "first", "+-", "total", "+-", "")
     table.columns[-1].justify = "left"
-    for i in order_of(found.sobol.total):
-        first, total = found.sobol.first[i], found.sobol.total[i]
+    for i in order_of(found.total):
+        first, total = found.first[i], found.total[i]
         figures = (f"{v:.2f}" for v in (first.shown, first.half, total.shown, total.half))
         bar = "#" * max(0, round(_BAR * first.shown))
         bar += "-" * max(0, round(_BAR * total.shown) - len(bar))
-        table.add_row(found.study.factors[i].name, *figures, bar)
+        table.add_row(factors[i].name, *figures, bar)
     return table
 
 
-def _convergence(found: Found) -> RenderableType:
-    names = [found.study.factors[i].name for i in order_of(found.convergence[-1].total)[:3]]
-    table = new_table("N", "widest +-", *names)
-    for step in found.convergence:
-        best = order_of(found.convergence[-1].total)[:3]
+def _convergence(factors: Sequence[Factor], steps: Sequence[Sobol]) -> RenderableType:
+    best = order_of(steps[-1].total)[:3]
+    table = new_table("N", "widest +-", *(factors[i].name for i in best))
+    for step in steps:
         table.add_row(str(step.samples), f"{step.widest:.2f}", *(f"{step.total[i].shown:.2f}" for i in best))
     return titled("Total indices by the number of samples", table)
+
+
+def _side_by_side(found: Found) -> RenderableType:
+    """The methods beside each other: total indices, or mu* where there are none."""
+    table = new_table("parameter", *(one.method for one in found.answers))
+    for i in ranked(found):
+        cells = []
+        for one in found.answers:
+            if one.sobol is not None:
+                cells.append(f"{one.sobol.total[i].shown:.2f} +-{one.sobol.total[i].half:.2f}")
+            elif one.morris is not None:
+                cells.append(f"{one.morris[i].mu_star:.2f} +-{one.morris[i].half:.2f}")
+        table.add_row(found.study.factors[i].name, *cells)
+    return titled("Total indices" if found.answers[0].sobol else f"mu*{_in(found.study)}", table)
+
+
+def ranked(found: Found) -> list[int]:
+    """Factors by their mean total index over the methods, or their mu* where there is none."""
+
+    def weight(i: int) -> float:
+        return sum(
+            one.sobol.total[i].value if one.sobol else one.morris[i].mu_star if one.morris else 0.0
+            for one in found.answers
+        )
+
+    return sorted(range(len(found.study.factors)), key=lambda i: -weight(i))
 
 
 def sensitivity_document(found: Found, command: str) -> dict[str, Any]:
@@ -150,32 +175,35 @@ def sensitivity_document(found: Found, command: str) -> dict[str, Any]:
         "versions": versions(),
         "scenario": setup.scenario.name,
         "imu": setup.imu,
-        "method": setup.methods[0].name,
         "metric": file.metric,
         "over": file.over,
         "of": file.of,
         "fidelity": file.fidelity,
-        "cases": [[one.walk_seed, one.unit_seed] for one in file.cases.deal(setup)],
+        "cases": [[one.walk_seed, one.unit_seed, one.noise_seed] for one in file.cases.deal(setup)],
         "units_as_factor": file.units_as_factor,
         "set": dict(file.set),
         "parameters": {factor.address: factor.as_dict() for factor in study.factors},
-        "nominal": finite_or_none(found.nominal),
+        "methods": {one.method: _answer(names, one) for one in found.answers},
     }
-    if found.check is not None:
-        check = found.check
-        document["check"] = {
-            "points": check.shares.tolist(),
-            "full": check.full.tolist(),
-            "budget": check.budget.tolist(),
-            "mean_off": check.mean_off,
+    return document
+
+
+def _answer(names: Sequence[str], one: Answer) -> dict[str, Any]:
+    told: dict[str, Any] = {"nominal": finite_or_none(one.nominal)}
+    if one.check is not None:
+        told["check"] = {
+            "points": one.check.shares.tolist(),
+            "full": one.check.full.tolist(),
+            "budget": one.check.budget.tolist(),
+            "mean_off": one.check.mean_off,
         }
-    if found.morris is not None:
-        document["morris"] = {
-            name: {"mu_star": one.mu_star, "half": one.half, "sigma": one.sigma}
-            for name, one in zip(names, found.morris, strict=True)
+    if one.morris is not None:
+        told["morris"] = {
+            name: {"mu_star": row.mu_star, "half": row.half, "sigma": row.sigma}
+            for name, row in zip(names, one.morris, strict=True)
         }
-    if found.sobol is not None:
-        document["sobol"] = {
+    if one.sobol is not None:
+        told["sobol"] = {
             "steps": [
                 {
                     "samples": step.samples,
@@ -185,12 +213,12 @@ def sensitivity_document(found: Found, command: str) -> dict[str, Any]:
                         for name, first, total in zip(names, step.first, step.total, strict=True)
                     },
                 }
-                for step in found.convergence
+                for step in one.convergence
             ],
-            "interplay": found.sobol.interplay,
-            "not_told_apart": [[names[i] for i in group] for group in not_told_apart(found.sobol.total)],
+            "interplay": one.sobol.interplay,
+            "not_told_apart": [[names[i] for i in group] for group in not_told_apart(one.sobol.total)],
         }
-    return document
+    return told
 
 
 def _index(index: Index) -> dict[str, float]:

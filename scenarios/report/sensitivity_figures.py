@@ -10,106 +10,134 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from footfall.scenarios.judge.gate import unit_of
-from footfall.scenarios.report.sensitivity import asked, order_of
-from footfall.scenarios.report.style import MORE, entitle, label_edges, new_figure, new_panels, save
+from footfall.scenarios.report.sensitivity import asked, ranked
+from footfall.scenarios.report.style import (
+    MORE,
+    colours_of,
+    entitle,
+    label_edges,
+    label_of,
+    new_figure,
+    new_panels,
+    save,
+)
 from footfall.scenarios.studies.factors import Factor
-from footfall.scenarios.studies.sensitivity import Found, Points
+from footfall.scenarios.studies.sensitivity import Answer, Found
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-FIRST, TOTAL, FAINT = "#1f6fb4", "#a9cbe6", "#9a9a9a"
+FIRST, TOTAL = "#1f6fb4", "#a9cbe6"
+_WHISKER: Any = {"color": "#222222", "elinewidth": 1.0, "capsize": 2.5, "fmt": "none"}
 _COLOURS = ("#c1440e", "#1f6fb4", "#6a9f3a", *MORE)
 _BINS = 12
 _WIDE = 26  # characters of a factor's name before it is broken
 
 
 def draw_indices(found: Found, path: Path) -> None:
-    """Bars of the indices, the greatest at the top, and their way there; of Morris alone mu* and sigma."""
-    if found.sobol is None:
-        _draw_morris(found, path)
-        return
-    count = len(found.study.factors)
-    figure, axes = new_figure(1, 2, 9.0, 1.6 + 0.42 * count, width_ratios=[1.25, 1.0])
-    bars, way = axes[0]
-    order = order_of(found.sobol.total)
-    places = np.arange(count)[::-1]
-    first, total = ([group[i] for i in order] for group in (found.sobol.first, found.sobol.total))
-    whisker: Any = {"color": "#222222", "elinewidth": 1.0, "capsize": 2.5, "fmt": "none"}
-    for indices, colour, shift, label in (
-        (total, TOTAL, 0.18, "total: alone and with others"),
-        (first, FIRST, -0.18, "first order: alone"),
-    ):
-        shown = [index.shown for index in indices]
-        bars.barh(places + shift, shown, 0.36, color=colour, label=label)
-        bars.errorbar(shown, places + shift, xerr=[index.half for index in indices], **whisker)
-    bars.set_yticks(places, [_wrapped(found.study.factors[i]) for i in order])
-    bars.grid(axis="y", visible=False)
-    bars.set_xlim(left=min(0.0, *(index.shown - index.half for index in first)))
-    bars.set_xlabel("share of the variance, with 95 % intervals")
-    bars.legend(loc="lower right", frameon=False, fontsize=8)
-    _converge(way, found, order)
+    """Bars of the indices, the greatest at the top, and how they converge; of Morris alone mu* and sigma.
+
+    One method has both side by side; several have a column each, with the factors in one order.
+    """
+    methods, count = len(found.answers), len(found.study.factors)
+    ways: Any = ()
+    tall = 1.0 + 0.42 * count
+    sobol = found.answers[0].sobol is not None
+    if methods == 1 and sobol:
+        figure, grid = new_figure(1, 2, 9.0, tall + 0.6, width_ratios=[1.25, 1.0])
+        bars, ways = grid[0, :1], grid[0, 1:]
+    else:
+        heights = [tall, 2.4] if sobol else [tall]
+        width = 2.0 + 2.9 * methods if methods > 1 else 6.4
+        figure, grid = new_figure(len(heights), methods, width, sum(heights) + 0.6, height_ratios=heights)
+        bars, ways = grid[0], (grid[1] if sobol else ())
+    order = ranked(found)
+    for place, (axis, one) in enumerate(zip(bars, found.answers, strict=True)):
+        draw = _sobol_bars if sobol else _morris_bars
+        draw(axis, one, order, found)
+        axis.set_yticks(
+            np.arange(count)[::-1], [_wrapped(found.study.factors[i]) if place == 0 else "" for i in order]
+        )
+        axis.grid(axis="y", visible=False)
+        if methods > 1:
+            entitle(axis, label_of(one.method))
+    bars[0].legend(loc="lower right", frameon=False, fontsize=8)
+    for place, (axis, one) in enumerate(zip(ways, found.answers, strict=bool(sobol))):
+        _converge(axis, one, order, found, legend=place == 0)
     figure.suptitle(_title(found), x=0.01, ha="left", fontsize=10)
     save(figure, path)
 
 
-def _converge(axis: Axes, found: Found, order: list[int]) -> None:
-    samples = np.array([step.samples for step in found.convergence])
+def _sobol_bars(axis: Axes, one: Answer, order: list[int], found: Found) -> None:
+    assert one.sobol is not None
+    places = np.arange(len(order))[::-1]
+    for group, colour, shift, label in (
+        (one.sobol.total, TOTAL, 0.18, "total: alone and with others"),
+        (one.sobol.first, FIRST, -0.18, "first order: alone"),
+    ):
+        shown = [group[i].shown for i in order]
+        axis.barh(places + shift, shown, 0.36, color=colour, label=label)
+        axis.errorbar(shown, places + shift, xerr=[group[i].half for i in order], **_WHISKER)
+    axis.set_xlim(left=min(0.0, *(index.shown - index.half for index in one.sobol.first)))
+    axis.set_xlabel("share of the variance (95 %)")
+
+
+def _morris_bars(axis: Axes, one: Answer, order: list[int], found: Found) -> None:
+    assert one.morris is not None
+    places = np.arange(len(order))[::-1]
+    size = [one.morris[i].mu_star for i in order]
+    axis.barh(places, size, 0.6, color=TOTAL, label="mu*: mean size of an effect")
+    axis.errorbar(size, places, xerr=[one.morris[i].half for i in order], **_WHISKER)
+    spread = [one.morris[i].sigma for i in order]
+    axis.plot(spread, places, "D", ms=4, color=_COLOURS[0], label="sigma: how it varies from place to place")
+    file = found.study.file
+    axis.set_xlabel(f"change of the {'log error' if file.of == 'ratio' else unit_of(file.metric)}")
+
+
+def _converge(axis: Axes, one: Answer, order: list[int], found: Found, *, legend: bool) -> None:
+    samples = np.array([step.samples for step in one.convergence])
     for place, i in enumerate(order[:6]):
         colour = _COLOURS[place]
-        value = np.array([step.total[i].value for step in found.convergence])
-        half = np.array([step.total[i].half for step in found.convergence])
+        value = np.array([step.total[i].value for step in one.convergence])
+        half = np.array([step.total[i].half for step in one.convergence])
         axis.fill_between(samples, value - half, value + half, color=colour, alpha=0.15, lw=0)
-        label = found.study.factors[i].name
-        axis.plot(samples, value, "o-", ms=3, lw=1.3, color=colour, label=textwrap.shorten(label, 34))
+        label = textwrap.shorten(found.study.factors[i].name, 34)
+        axis.plot(samples, value, "o-", ms=3, lw=1.3, color=colour, label=label)
     axis.set_xscale("log", base=2)
-    axis.set_xticks(samples, [str(n) for n in samples])
+    axis.set_xticks(samples[::2], [str(n) for n in samples[::2]])
     axis.set_xlabel("samples N")
-    axis.set_ylabel("total index")
-    axis.legend(framealpha=0.8, edgecolor="none", fontsize=7, loc="upper right")
-
-
-def _draw_morris(found: Found, path: Path) -> None:
-    assert found.morris is not None
-    count = len(found.study.factors)
-    figure, axes = new_figure(1, 1, 6.4, 1.4 + 0.36 * count)
-    axis = axes[0, 0]
-    order = sorted(range(count), key=lambda i: -found.morris[i].mu_star)  # type: ignore[index]
-    places = np.arange(count)[::-1]
-    size = [found.morris[i].mu_star for i in order]
-    axis.barh(places, size, 0.6, color=TOTAL, label="mu*: mean size of an effect")
-    halves = [found.morris[i].half for i in order]
-    axis.errorbar(size, places, xerr=halves, color="#222222", elinewidth=1, capsize=2.5, fmt="none")
-    spread = [found.morris[i].sigma for i in order]
-    axis.plot(spread, places, "D", ms=4, color=_COLOURS[0], label="sigma: how it varies from place to place")
-    axis.set_yticks(places, [_wrapped(found.study.factors[i]) for i in order])
-    axis.grid(axis="y", visible=False)
-    what = "logarithm of the error" if found.study.file.of == "ratio" else unit_of(found.study.file.metric)
-    axis.set_xlabel(f"change of the {what} over the whole range")
-    axis.legend(frameon=False, fontsize=8, loc="lower right")
-    figure.suptitle(_title(found), x=0.01, ha="left", fontsize=10)
-    save(figure, path)
+    axis.set_ylabel("total index" if legend else "")
+    if legend:
+        axis.legend(framealpha=0.8, edgecolor="none", fontsize=7, loc="upper right")
 
 
 def draw_effects(found: Found, path: Path) -> None:
-    """The score over each factor: median and 10th to 90th percentile over all the others."""
-    points = found.points[-1]
+    """The score over each factor: the median over all the others; of one method with 10 to 90 % of them."""
     factors = found.study.factors
     figure, axes = new_panels(len(factors), 2.6, 2.1, sharey=True)
-    order = range(len(factors)) if found.sobol is None else order_of(found.sobol.total)
-    for axis, i in zip(axes, order, strict=True):
-        _effect(axis, factors[i], points, i)
+    design = list(found.shares)[-1]
+    single = len(found.answers) == 1
+    colours = colours_of([one.method for one in found.answers])
+    for axis, i in zip(axes, ranked(found), strict=True):
+        for one in found.answers:
+            colour = FIRST if single else colours[one.method]
+            share, scores = found.shares[design][:, i], one.scores[design]
+            _effect(axis, factors[i], share, scores, colour, band=single, label=label_of(one.method))
+            axis.axhline(one.nominal, color=colour, lw=0.8, ls=":")
         entitle(axis, _wrapped(factors[i], 34, unit=True))
-        axis.axhline(found.nominal, color="#222222", lw=0.8, ls=":")
     plain_log(axes[0])
     label_edges(axes, "", f"error ({unit_of(found.study.file.metric)})")
-    title = f"{_title(found)}\nMedian and 10th to 90th percentile over all other parameters; dotted: as it is"
+    if not single:
+        axes[0].legend(frameon=False, fontsize=7)
+    what = "Median and 10th to 90th percentile" if single else "Median"
+    title = f"{_title(found)}\n{what} over all other parameters; dotted: with none of them changed"
     figure.suptitle(title, x=0.01, ha="left", fontsize=9)
     save(figure, path)
 
 
-def _effect(axis: Axes, factor: Factor, points: Points, i: int) -> None:
-    share, scores = points.shares[:, i], points.scores
+def _effect(
+    axis: Axes, factor: Factor, share: np.ndarray, scores: np.ndarray, colour: str, *, band: bool, label: str
+) -> None:
     if factor.values is not None:
         bins = np.minimum((share * len(factor.values)).astype(int), len(factor.values) - 1)
         x: Any = np.arange(len(factor.values))
@@ -124,8 +152,9 @@ def _effect(axis: Axes, factor: Factor, points: Points, i: int) -> None:
             axis.minorticks_off()
     there = np.unique(bins)
     low, middle, high = np.array([np.percentile(scores[bins == b], [10, 50, 90]) for b in there]).T
-    axis.fill_between(x[there], low, high, color=TOTAL, alpha=0.6, lw=0)
-    axis.plot(x[there], middle, "o-", ms=2.5, lw=1.4, color=FIRST)
+    if band:
+        axis.fill_between(x[there], low, high, color=TOTAL, alpha=0.6, lw=0)
+    axis.plot(x[there], middle, "o-", ms=2.5, lw=1.4, color=colour, label=label)
 
 
 def plain_log(axis: Axes) -> None:

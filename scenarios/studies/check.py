@@ -18,7 +18,7 @@ LIMIT = 0.15  # mean deviation over the points, as a share, beyond which the sur
 
 @dataclass(frozen=True)
 class Check:
-    """Scores at the same points.
+    """Scores of a method at the same points.
 
     Attributes
     ----------
@@ -26,6 +26,7 @@ class Check:
     full, budget : (p,) scores over the cases, by the full chain and by the surrogate
     """
 
+    method: str
     shares: np.ndarray
     full: np.ndarray
     budget: np.ndarray
@@ -49,9 +50,10 @@ class Check:
             By how much.
         """
         if not self.mean_off <= LIMIT:
+            off = f"{100 * self.mean_off:.0f} % in the mean over {len(self.full)} points"
             raise InputError(
-                f"the budget is off the full chain by {100 * self.mean_off:.0f} % in the mean over "
-                f'{len(self.full)} points, more than {100 * LIMIT:.0f} %: use fidelity = "full"'
+                f"the budget is off the full chain of {self.method} by {off}, more than {100 * LIMIT:.0f} %: "
+                'use fidelity = "full"'
             )
 
 

@@ -19,7 +19,7 @@ class FactorTable(Strict):
     from_: float | None = Field(default=None, alias="from")
     to: float | None = None
     scale: Literal["linear", "log"] = "linear"
-    values: list[float | str | bool | list[float]] | None = None
+    values: list[int | float | str | bool | list[float]] | None = None
     label: str = ""
 
     @model_validator(mode="after")

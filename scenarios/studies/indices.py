@@ -122,34 +122,35 @@ def sobol_until(
     at_most: int,
     widest: float,
     seed: int,
-) -> Iterator[tuple[Sobol, np.ndarray, np.ndarray]]:
-    """Indices with twice as many samples each time, until every interval is narrow enough.
+) -> Iterator[tuple[Sobol, ...]]:
+    """Indices of several functions with twice as many samples each time, until every interval is narrow.
 
     Parameters
     ----------
-    function : values (p,) at points (p, factors); called with new points alone
+    function : values (p, functions) at points (p, factors); called with new points alone
     samples : to begin with, a power of 2
     at_most : no more samples than that
     widest : half of an interval's width that is narrow enough
 
     Yields
     ------
-    Sobol, and all points and values so far: first for an eighth, a quarter and a half of `samples`, which
-    tell how they converge.
+    Of each function: first with an eighth, a quarter and a half of `samples`, which tell how they converge.
     """
-    points = sobol_design(factors, samples, seed)
-    values = function(points)
+
+    def found(samples: int) -> tuple[Sobol, ...]:
+        return tuple(sobol(factors, column, seed) for column in values[: samples * (factors + 2)].T)
+
+    values = function(sobol_design(factors, samples, seed))
     for early in (samples // 8, samples // 4, samples // 2):
         if early >= 16:
-            rows = early * (factors + 2)
-            yield sobol(factors, values[:rows], seed), points[:rows], values[:rows]
+            yield found(early)
     while True:
-        found = sobol(factors, values, seed)
-        yield found, points, values
-        if found.widest <= widest or 2 * found.samples > at_most:
+        now = found(samples)
+        yield now
+        samples *= 2
+        if max(one.widest for one in now) <= widest or samples > at_most:
             return
-        points = sobol_design(factors, 2 * found.samples, seed)
-        values = np.concatenate([values, function(points[len(values) :])])
+        values = np.concatenate([values, function(sobol_design(factors, samples, seed)[len(values) :])])
 
 
 def not_told_apart(indices: Sequence[Index]) -> list[tuple[int, ...]]:

@@ -126,10 +126,11 @@ def error_map(
     else:
         points = [*points_at((x, y), shares), {}]
         found = evaluate_points(base, points, cases.deal, metric, workers=workers, on_progress=on_trials)
-        there_ = np.isfinite(found.errors[-1])
+        (errors,) = found.errors
+        there_ = np.isfinite(errors[-1])
         if not there_.any():
             raise InputError(f"no case came to its end: {next(iter(found.failures))}")
-        errors, lost = found.errors[:, there_], tuple(found.failures)[: int((~there_).sum())]
+        errors, lost = errors[:, there_], tuple(found.failures)[: int((~there_).sum())]
     scores = over_cases(errors, over)
     return ErrorMap(
         method.name,

@@ -41,7 +41,7 @@ class Worn(CasesTable):
 
 @dataclass(frozen=True)
 class Evaluated:
-    """Errors (p, c) of p points in c cases, infinite where there is none, and why: reason -> how often."""
+    """Errors (m, p, c) of methods at points in cases, infinite where there is none; reason -> how often."""
 
     errors: np.ndarray
     failures: Mapping[str, int]
@@ -101,77 +101,81 @@ def evaluate_points(
 
     Parameters
     ----------
-    base : with the one method that is judged
+    base : with the methods that are judged, on the same recordings
     points : address -> value
     deal : the cases of a setup, in the same order for each
     metric : of `Score`; its size counts
     which : (p,) the one case of each point; all where None
     workers, store, on_progress : as of `execute`
     """
-    (method,) = base.methods
-    shared = base.setup().scenario
-    own = [_own(method, point) for point in points]
+    shared, methods = base.setup().scenario, base.methods
+    own = [[_own(method, point) for point in points] for method in methods]
     groups: dict[str, list[int]] = {}
-    for index, (point, values) in enumerate(zip(points, own, strict=True)):
-        rest = {address: value for address, value in point.items() if _name(method, address) not in values}
+    for index, point in enumerate(points):
+        rest = {address: value for address, value in point.items() if not _owned(methods, address)}
         groups.setdefault(json.dumps([rest, _case(which, index)], sort_keys=True), []).append(index)
     trials: list[Trial] = []
-    told: list[tuple[int, dict[str, list[int]]]] = []  # of each trial: its case, and points by method's name
+    told: list[tuple[int, _Owners]] = []  # of each trial: its case, and whose its rows are
     for key, members in groups.items():
         rest, chosen = json.loads(key)
         setup = with_values(base, rest).setup()
         if not any(address.startswith("scenario.") for address in rest):
             setup = replace(setup, scenario=shared)  # whose plan is then hashed once
-        for methods, owners in _methods(method, own, members):
-            dealt = list(enumerate(deal(replace(setup, methods=methods))))
+        for made, owners in _parts(methods, own, members):
+            dealt = list(enumerate(deal(replace(setup, methods=made))))
             for case, trial in dealt if chosen is None else [dealt[chosen]]:
                 trials.append(trial)
                 told.append((case, owners))
     count = len(deal(base.setup())) if which is None else 1
-    errors = np.full((len(points), count), np.inf)
+    errors = np.full((len(methods), len(points), count), np.inf)
     failures: Counter[str] = Counter()
     done = execute(trials, workers=workers, store=store, on_progress=on_progress)
     for outcome, (case, owners) in zip(done, told, strict=True):
         for row in outcome.rows:
-            members = owners[row.method]
+            place, members = owners[row.method]
             if row.score is None:
                 failures[row.error] += len(members)
             else:
-                errors[members, case if which is None else 0] = abs(getattr(row.score, metric))
+                errors[place, members, case if which is None else 0] = abs(getattr(row.score, metric))
     return Evaluated(errors, dict(failures))
 
 
-def _name(method: Method, address: str) -> str:
-    """A parameter's name in the method, or "" for one of another area."""
-    return address.removeprefix(f"{method.name}.") if address.startswith(f"{method.name}.") else ""
+# Name of a method with a point's parameters -> which of the methods it is, and the points that it belongs to.
+_Owners = Mapping[str, tuple[int, list[int]]]
 
 
 def _own(method: Method, point: Mapping[str, Any]) -> dict[str, Any]:
-    """The values of a point that the method itself takes; dead reckoning takes none."""
-    if method.params is None:
-        return {}
-    named = {_name(method, address): value for address, value in point.items()}
-    return {name: value for name, value in named.items() if name}
+    """The values of a point that the method itself takes."""
+    values = {address: value for address, value in point.items() if _owned([method], address)}
+    return {address.removeprefix(f"{method.name}."): value for address, value in values.items()}
+
+
+def _owned(methods: Sequence[Method], address: str) -> bool:
+    """Whether an address is a parameter of one of the methods; dead reckoning has none of its own."""
+    return any(one.params is not None and address.startswith(f"{one.name}.") for one in methods)
 
 
 def _case(which: np.ndarray | None, index: int) -> int | None:
     return None if which is None else int(which[index])
 
 
-def _methods(
-    method: Method, own: Sequence[Mapping[str, Any]], members: Sequence[int]
-) -> list[tuple[tuple[Method, ...], dict[str, list[int]]]]:
-    """The different methods of points that share all else, in parts, each with points by its name."""
-    by_params: dict[str, list[int]] = {}
-    for index in members:
-        by_params.setdefault(json.dumps(own[index], sort_keys=True), []).append(index)
-    parts = []
-    different = list(by_params.values())
-    for first in range(0, len(different), TOGETHER):
-        owners = {f"{method.name}-{same[0]}": same for same in different[first : first + TOGETHER]}
-        made = tuple(method.with_params(own[same[0]]).renamed(name) for name, same in owners.items())
-        parts.append((made, owners))
-    return parts
+def _parts(
+    methods: Sequence[Method], own: Sequence[Sequence[Mapping[str, Any]]], members: Sequence[int]
+) -> list[tuple[tuple[Method, ...], _Owners]]:
+    """The different methods of points that share all else, in parts of a trial's size."""
+    made: dict[str, Method] = {}
+    owners: dict[str, tuple[int, list[int]]] = {}
+    for place, method in enumerate(methods):
+        by_params: dict[str, list[int]] = {}
+        for index in members:
+            by_params.setdefault(json.dumps(own[place][index], sort_keys=True), []).append(index)
+        for same in by_params.values():
+            name = f"{method.name}-{same[0]}"
+            made[name] = method.with_params(own[place][same[0]]).renamed(name)
+            owners[name] = place, same
+    names = list(made)
+    parts = [names[first : first + TOGETHER] for first in range(0, len(names), TOGETHER)]
+    return [(tuple(made[name] for name in part), {name: owners[name] for name in part}) for part in parts]
 
 
 def over_cases(errors: np.ndarray, over: Over) -> np.ndarray:

@@ -1,8 +1,8 @@
-"""Which parameters a method's error depends on: Morris' and Sobol's figures, in full or by the budget."""
+"""Which parameters methods' errors depend on: Morris' and Sobol's figures, in full or by the budget."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,10 +16,10 @@ from footfall.scenarios.studies.budget import Case
 from footfall.scenarios.studies.check import Check, check_points
 from footfall.scenarios.studies.indices import Screened, Sobol, morris, morris_design, sobol_until
 from footfall.scenarios.studies.listening import Heard, Lost, listened
-from footfall.scenarios.studies.points import evaluate_points, over_cases, require_finite
+from footfall.scenarios.studies.points import Evaluated, evaluate_points, over_cases, require_finite
 from footfall.scenarios.studies.sensitivity_file import UNIT, Study
 
-Evaluate = Callable[[np.ndarray], np.ndarray]  # shares (p, factors) of the ranges -> scores (p,)
+Evaluate = Callable[[np.ndarray], np.ndarray]  # shares (p, factors) of the ranges -> scores (p, methods)
 
 
 @dataclass(frozen=True)
@@ -42,18 +42,29 @@ class Watch:
 
 
 @dataclass(frozen=True)
-class Points:
-    """Points of a design, where they lie, and what was found there.
+class Answer:
+    """What a study found of one method.
 
     Attributes
     ----------
-    shares : (p, factors) of each range
-    scores : (p,) the metric over the cases
+    nominal : the metric over the cases at the values that the documents have
+    scores : design -> (p,) the metric over the cases at its points
+    morris : of each factor, or None where it was not asked for
+    convergence : Sobol's indices after ever more samples; the last are the result
+    check : the budget beside the full chain, where that was used
     """
 
-    design: str
-    shares: np.ndarray
-    scores: np.ndarray
+    method: str
+    nominal: float
+    scores: Mapping[str, np.ndarray]
+    morris: tuple[Screened, ...] | None
+    convergence: tuple[Sobol, ...]
+    check: Check | None
+
+    @property
+    def sobol(self) -> Sobol | None:
+        """The last and best indices."""
+        return self.convergence[-1] if self.convergence else None
 
 
 @dataclass(frozen=True)
@@ -62,36 +73,28 @@ class Found:
 
     Attributes
     ----------
-    nominal : the metric over the cases at the values that the documents have
-    morris : of each factor, or None where it was not asked for
-    convergence : Sobol's indices after ever more samples; the last are the result
-    check : the budget beside the full chain, where that was used
-    points : of each design
+    shares : design -> (p, factors) its points, as shares of the ranges
+    answers : of each method
     """
 
     study: Study
-    nominal: float
-    morris: tuple[Screened, ...] | None
-    convergence: tuple[Sobol, ...]
-    check: Check | None
-    points: tuple[Points, ...]
-
-    @property
-    def sobol(self) -> Sobol | None:
-        """The last and best indices."""
-        return self.convergence[-1] if self.convergence else None
+    shares: Mapping[str, np.ndarray]
+    answers: tuple[Answer, ...]
 
     def rows(self) -> Iterator[dict[str, Any]]:
-        """A row a point: design, its values by address, its score."""
-        for part in self.points:
-            values, which = self.study.points(part.shares)
-            for i, (point, score) in enumerate(zip(values, part.scores.tolist(), strict=True)):
+        """A row a point and method: design, the values by address, method, score."""
+        metric = self.study.file.metric
+        for design, shares in self.shares.items():
+            values, which = self.study.points(shares)
+            for i, point in enumerate(values):
                 unit = {} if which is None else {UNIT: self.study.factors[-1].ends[which[i]]}
-                yield {"design": part.design, **point, **unit, self.study.file.metric: score}
+                for one in self.answers:
+                    score = float(one.scores[design][i])
+                    yield {"design": design, **point, **unit, "method": one.method, metric: score}
 
 
 def perform_study(study: Study, watch: Watch | None = None) -> Found:
-    """Screen the factors and find their indices.
+    """Screen the factors and find their indices, for every method on the same recordings.
 
     Raises
     ------
@@ -102,25 +105,29 @@ def perform_study(study: Study, watch: Watch | None = None) -> Found:
     watch = watch or Watch()
     full = _full(study, watch)
     if study.file.fidelity == "full":
-        return _found(study, full, _nominal(study, watch), None)
-    heard, budget = _budget(study, watch)
+        return _found(study, full, _nominal(study, watch), ())
+    known, budget = _budget(study, watch)
     shares = check_points(len(study.factors), study.file.seed)
-    check = Check(shares, full(shares), budget(shares))
-    watch.on_check(check)
-    check.require()
-    known = _heard(study, heard, ())(np.empty((1, 0)))
-    return _found(study, budget, float(over_cases(known, study.file.over)[0]), check)
+    names = [method.name for method in study.base.methods]
+    checks = tuple(map(Check, names, [shares] * len(names), full(shares).T, budget(shares).T))
+    for check in checks:
+        watch.on_check(check)
+    for check in checks:
+        check.require()
+    return _found(study, budget, known, checks)
 
 
-def _found(study: Study, evaluate: Evaluate, nominal: float, check: Check | None) -> Found:
+def _found(study: Study, evaluate: Evaluate, nominal: np.ndarray, checks: Sequence[Check]) -> Found:
     file, count = study.file, len(study.factors)
-    screened, points = None, []
+    methods = study.base.methods
+    points: dict[str, np.ndarray] = {}
+    scores: dict[str, np.ndarray] = {}
+    screened: list[tuple[Screened, ...] | None] = [None] * len(methods)
     if file.morris is not None:
-        shares = morris_design(count, file.morris.trajectories, file.seed)
-        scores = evaluate(shares)
-        screened = morris(shares, transformed(study, scores), file.seed)
-        points.append(Points("morris", shares, scores))
-    convergence: list[Sobol] = []
+        shares = points["morris"] = morris_design(count, file.morris.trajectories, file.seed)
+        made = scores["morris"] = evaluate(shares)
+        screened = [morris(shares, column, file.seed) for column in transformed(study, made).T]
+    steps: list[tuple[Sobol, ...]] = []
     if file.sobol is not None:
         asked: list[tuple[np.ndarray, np.ndarray]] = []
 
@@ -128,18 +135,31 @@ def _found(study: Study, evaluate: Evaluate, nominal: float, check: Check | None
             asked.append((shares, evaluate(shares)))
             return transformed(study, asked[-1][1])
 
-        at_most = max(file.sobol.at_most, file.sobol.samples)
-        steps = sobol_until(
-            judged,
-            count,
-            samples=file.sobol.samples,
-            at_most=at_most,
-            widest=file.sobol.widest,
-            seed=file.seed,
+        told = file.sobol
+        at_most = max(told.at_most, told.samples)
+        steps = list(
+            sobol_until(
+                judged,
+                count,
+                samples=told.samples,
+                at_most=at_most,
+                widest=told.widest,
+                seed=file.seed,
+            )
         )
-        convergence = [found for found, _, _ in steps]
-        points.append(Points("sobol", *map(np.concatenate, zip(*asked, strict=True))))
-    return Found(study, nominal, screened, tuple(convergence), check, tuple(points))
+        points["sobol"], scores["sobol"] = map(np.concatenate, zip(*asked, strict=True))
+    answers = [
+        Answer(
+            method.name,
+            float(nominal[i]),
+            {design: made[:, i] for design, made in scores.items()},
+            screened[i],
+            tuple(step[i] for step in steps),
+            checks[i] if checks else None,
+        )
+        for i, method in enumerate(methods)
+    ]
+    return Found(study, points, tuple(answers))
 
 
 def transformed(study: Study, scores: np.ndarray) -> np.ndarray:
@@ -152,63 +172,74 @@ def _full(study: Study, watch: Watch) -> Evaluate:
 
     def evaluate(shares: np.ndarray) -> np.ndarray:
         points, which = study.points(shares)
-        found = evaluate_points(
-            study.base,
-            points,
-            study.file.cases.deal,
-            study.file.metric,
-            which=which,
-            workers=watch.workers,
-            store=watch.store,
-            on_progress=watch.on_trials,
-        )
-        scores = over_cases(found.errors, study.file.over)
-        require_finite(scores, shares, study.factors, found.failures)
+        found = _evaluated(study, watch, points, which)
+        scores = np.stack([over_cases(errors, study.file.over) for errors in found.errors], axis=1)
+        require_finite(scores.max(axis=1), shares, study.factors, found.failures)
         return scores
 
     return evaluate
 
 
-def _nominal(study: Study, watch: Watch) -> float:
-    found = evaluate_points(
+def _nominal(study: Study, watch: Watch) -> np.ndarray:
+    found = _evaluated(study, watch, [{}], None)
+    return np.array([over_cases(errors, study.file.over)[0] for errors in found.errors])
+
+
+def _evaluated(
+    study: Study, watch: Watch, points: Sequence[Mapping[str, Any]], which: np.ndarray | None
+) -> Evaluated:
+    return evaluate_points(
         study.base,
-        [{}],
+        points,
         study.file.cases.deal,
         study.file.metric,
+        which=which,
         workers=watch.workers,
         store=watch.store,
         on_progress=watch.on_trials,
     )
-    return float(over_cases(found.errors, study.file.over)[0])
 
 
-def _budget(study: Study, watch: Watch) -> tuple[Sequence[Case | Lost], Evaluate]:
-    """The cases and the surrogate over them."""
+def _budget(study: Study, watch: Watch) -> tuple[np.ndarray, Evaluate]:
+    """Scores (m,) at the documents' own values, and the surrogate."""
     listed = next((factor for factor in study.varied if factor.values is not None), None)
     if listed is not None:
         raise InputError('the budget takes ranges, no lists: use fidelity = "full"', listed.address)
-    addresses = [factor.address for factor in study.varied]
-    _heard(study, (), addresses)  # refused before anything is walked
-    trials = study.file.cases.deal(study.base.setup())
-    heard = listened(trials, workers=watch.workers, on_progress=watch.on_cases)
-    model = _heard(study, heard, addresses)
+    setup, over = study.base.setup(), study.file.over
+    _models(study, ())  # refused before anything is walked
+    heard = listened(study.file.cases.deal(setup), workers=watch.workers, on_progress=watch.on_cases)
     reasons = {one[1]: 1 for one in heard if not isinstance(one, Case)}
     if len(reasons) and not any(isinstance(one, Case) for one in heard):
         raise InputError(f"no case came to its end: {next(iter(reasons))}")
+    models = _models(study, heard)
 
     def evaluate(shares: np.ndarray) -> np.ndarray:
         values = [factor.at(shares[:, i]) for i, factor in enumerate(study.varied)]
-        errors = model(np.column_stack(values))
         _, which = study.points(shares)
-        if which is not None:
-            errors = errors[np.arange(len(errors)), which][:, None]
-        scores = over_cases(errors, study.file.over)
-        require_finite(scores, shares, study.factors, reasons)
+        columns = []
+        for addresses, model in models:
+            own = [values[i] for i, factor in enumerate(study.varied) if factor.address in addresses]
+            errors = model(np.column_stack(own) if own else np.empty((len(shares), 0)))
+            if which is not None:
+                errors = errors[np.arange(len(errors)), which][:, None]
+            columns.append(over_cases(errors, over))
+        scores = np.stack(columns, axis=1)
+        require_finite(scores.max(axis=1), shares, study.factors, reasons)
         return scores
 
-    return heard, evaluate
+    known = [Heard(heard, setup.spec, one, (), study.file.metric) for one in setup.methods]
+    nominal = np.array([over_cases(model(np.empty((1, 0))), over)[0] for model in known])
+    return nominal, evaluate
 
 
-def _heard(study: Study, heard: Sequence[Case | Lost], addresses: Sequence[str]) -> Heard:
+def _models(study: Study, heard: Sequence[Case | Lost]) -> list[tuple[list[str], Heard]]:
+    """Of each method the addresses that concern it, and the surrogate."""
     setup = study.base.setup()
-    return Heard(heard, setup.spec, setup.methods[0], addresses, study.file.metric)
+    found = []
+    for method in setup.methods:
+        others = [f"{one.name}." for one in setup.methods if one is not method and one.params is not None]
+        addresses = [
+            one.address for one in study.varied if not any(one.address.startswith(head) for head in others)
+        ]
+        found.append((addresses, Heard(heard, setup.spec, method, addresses, study.file.metric)))
+    return found

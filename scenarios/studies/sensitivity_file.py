@@ -1,4 +1,4 @@
-"""The file of a sensitivity study: what is varied, of which method's error, over which cases."""
+"""The file of a sensitivity study: what is varied, of which methods' error, over which cases."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ class SobolTable(Strict):
 class SensitivityFile(Strict):
     """A study's file (docs/sensitivity.md)."""
 
-    description: str = ""
+    description: Annotated[str, Field(min_length=1)]
     scenario: str
     imu: str | None = None
-    method: str = "hdr"
+    methods: Annotated[tuple[str, ...], Field(strict=False, min_length=1)] = ("hdr",)
     metric: str = "heading_error_mean_deg"
     over: Over = "median"
     of: Literal["ratio", "difference"] = "ratio"
@@ -76,7 +76,7 @@ class Study:
     ----------
     name : of its file
     file : what stands there
-    base : the documents, with its method and all that it sets
+    base : the documents, with its methods and all that it sets
     factors : what is varied, the unit last where it is a factor
     """
 
@@ -134,7 +134,7 @@ def build_study(name: str, table: Mapping[str, Any], source: str) -> Study:
     file = checked(table, SensitivityFile, source)
     try:
         require_metric(file.metric)
-        base = documents(file.scenario, imu=file.imu, methods=[file.method])
+        base = documents(file.scenario, imu=file.imu, methods=file.methods)
         base = with_values(base, file.set)
         factors = with_units(base, factors_of(file.parameters))
         require_allowed(base, factors)

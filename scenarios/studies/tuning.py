@@ -191,7 +191,7 @@ def _in_full(
             store=None if folder is None else folder / "footfalls",
             on_progress=on_trials,
         )
-        return found.errors
+        return np.asarray(found.errors[0])
 
     return errors
 

@@ -29,7 +29,7 @@ def test_a_compiled_map_is_the_chain_pair_by_pair(base):
     np.testing.assert_allclose(found.xs, [0.1, 0.55, 1.0])
     np.testing.assert_allclose(found.ys, [0.002, 0.02 / np.sqrt(10), 0.02])
     points = [{X: x, Y: y} for y in found.ys for x in found.xs] + [{}]
-    full = evaluate_points(base, points, TWO.deal, "heading_error_mean_deg", workers=1).errors.mean(axis=1)
+    full = evaluate_points(base, points, TWO.deal, "heading_error_mean_deg", workers=1).errors[0].mean(axis=1)
     np.testing.assert_allclose(found.scores.ravel(), full[:-1], rtol=1e-6)
     assert found.default == (0.25, 0.007, pytest.approx(full[-1], rel=1e-6))
     assert found.cases == 2

@@ -37,7 +37,7 @@ def by_hand(base, point, units=2):
 def test_points_are_what_the_chain_gives_one_by_one(base):
     points = [{FLICKER: 300.0, TAU: 4.0}, {}, {TAU: 12.0}, {FLICKER: 300.0, TAU: 4.0}, {FLICKER: 300.0}]
     found = evaluate_points(base, points, Worn(walks=1, units=2).deal, METRIC, workers=1)
-    np.testing.assert_array_equal(found.errors, [by_hand(base, point) for point in points])
+    np.testing.assert_array_equal(found.errors, [[by_hand(base, point) for point in points]])
     assert found.failures == {}
     assert len(np.unique(found.errors)) == 8
 
@@ -64,14 +64,14 @@ def test_each_point_may_have_a_case_of_its_own(base):
     deal = Worn(walks=1, units=2).deal
     found = evaluate_points(base, points, deal, METRIC, which=np.array([1, 0, 1]), workers=1)
     five, own = by_hand(base, {TAU: 5.0}), by_hand(base, {})
-    np.testing.assert_array_equal(found.errors, [[five[1]], [five[0]], [own[1]]])
+    np.testing.assert_array_equal(found.errors, [[[five[1]], [five[0]], [own[1]]]])
 
 
 def test_a_case_that_fails_is_infinite_and_tells_why(base):
     refused = {"pdr.bias_s": 100.0}
     found = evaluate_points(base, [{}, refused], Worn(walks=1, units=2).deal, METRIC, workers=1)
-    assert np.isfinite(found.errors[0]).all()
-    assert np.isinf(found.errors[1]).all()
+    assert np.isfinite(found.errors[0, 0]).all()
+    assert np.isinf(found.errors[0, 1]).all()
     ((reason, count),) = found.failures.items()
     assert "stands still" in reason
     assert count == 2

@@ -18,7 +18,7 @@ G = "imu.gyro.g_sensitivity_sigma_deg_s_g"
 STUDY = f"""
 description = "what costs"
 scenario = "short.toml"
-method = "hdr"
+methods = ["hdr"]
 fidelity = "budget"
 [cases]
 walks = 1
@@ -52,15 +52,16 @@ def test_a_study_from_its_file_to_its_folder(file, cli, here):
     assert code == 0, told
     found = json.loads(printed)
     assert found == json.loads((here / "out/costs/sensitivity.json").read_text())
-    assert (found["name"], found["scenario"], found["method"]) == ("costs", "short", "hdr")
+    assert (found["name"], found["scenario"], list(found["methods"])) == ("costs", "short", ["hdr"])
     assert found["parameters"][G] == {
         "label": "g-sensitivity", "unit": "deg/s/g", "from": 0.015, "to": 0.45, "scale": "log"
     }  # fmt: skip
-    assert found["cases"] == [[3, 1000], [3, 1001], [3, 1002]]
-    assert set(found["morris"]) == {G, "hdr.theta_w_deg_s"}
-    assert [step["samples"] for step in found["sobol"]["steps"]] == [16, 32]
-    assert len(found["check"]["full"]) == 8
-    assert "The budget beside the full chain" in told
+    assert found["cases"] == [[3, unit, unit] for unit in (1000, 1001, 1002)]
+    own = found["methods"]["hdr"]
+    assert set(own["morris"]) == {G, "hdr.theta_w_deg_s"}
+    assert [step["samples"] for step in own["sobol"]["steps"]] == [16, 32]
+    assert len(own["check"]["full"]) == 8
+    assert "hdr: the budget beside the full chain" in told
     points = pq.read_table(here / "out/costs/points.parquet").to_pydict()
     assert points["design"] == ["morris"] * 12 + ["sobol"] * 128
     assert min(points[G]) >= 0.015
@@ -77,14 +78,34 @@ def test_both_fidelities_agree_on_dead_reckoning(file):
     """In the mean and in the order of the points; the sheet's own values are met to the digit."""
     text = file.read_text().replace('"hdr"', '"pdr"').replace("hdr.theta_w_deg_s", "imu.gyro.flicker_deg_h")
     file.write_text(text.replace("from = 0.2, to = 1.0", "from = 20, to = 200").replace("= 16", "= 32"))
-    budget = perform_study(read_study(str(file)), Watch(workers=1))
+    (budget,) = perform_study(read_study(str(file)), Watch(workers=1)).answers
     assert budget.check.mean_off < 0.1
-    full = perform_study(read_study(str(file), {"fidelity": "full", "sobol": None}), Watch(workers=1))
+    changes = {"fidelity": "full", "sobol": None}
+    (full,) = perform_study(read_study(str(file), changes), Watch(workers=1)).answers
     assert full.check is None
     assert full.nominal == pytest.approx(budget.nominal, rel=1e-6)
-    ratio = np.log(budget.points[0].scores / full.points[0].scores)
+    ratio = np.log(budget.scores["morris"] / full.scores["morris"])
     assert np.abs(ratio).mean() < 0.15
-    assert np.corrcoef(np.log([budget.points[0].scores, full.points[0].scores]))[0, 1] > 0.9
+    assert np.corrcoef(np.log([budget.scores["morris"], full.scores["morris"]]))[0, 1] > 0.9
+
+
+def test_methods_side_by_side(file, cli, here):
+    """The same figures as each method by itself has: the recordings are the same."""
+    both = read_study(str(file), {"methods": ["pdr", "hdr"], "sobol": {"samples": 64, "at_most": 64}})
+    pdr, hdr = perform_study(both, Watch(workers=1)).answers
+    one = perform_study(read_study(str(file), {"sobol": {"samples": 64, "at_most": 64}}), Watch(workers=1))
+    assert hdr.sobol == one.answers[0].sobol
+    assert pdr.sobol.total[1].value == 0  # of HDR's threshold
+    assert pdr.nominal != hdr.nominal
+    changes = {"methods": ["pdr", "hdr"], "fidelity": "full", "sobol": None, "morris": {"trajectories": 2}}
+    full = perform_study(read_study(str(file), changes), Watch(workers=1))
+    assert full.answers[1].nominal == pytest.approx(hdr.nominal, rel=1e-6)
+    assert full.answers[0].morris[1].mu_star == 0
+    assert len(list(full.rows())) == 12
+    changed(file, '["hdr"]', '["pdr", "hdr"]')
+    code, printed, told = cli("sensitivity costs.toml --workers 1")
+    assert code == 0, told
+    assert "Total indices" in printed
 
 
 def test_the_unit_as_a_factor(file):
@@ -93,25 +114,27 @@ def test_the_unit_as_a_factor(file):
     found = perform_study(study, Watch(workers=1))
     rows = list(found.rows())
     assert {row["unit"] for row in rows} == {1000, 1001, 1002}
-    assert len(found.sobol.total) == 3
+    assert len(found.answers[0].sobol.total) == 3
 
 
 def test_a_budget_that_is_too_far_off_is_refused_after_it_was_shown(file, monkeypatch):
-    wrong = lambda study, watch: ([], lambda shares: np.full(len(shares), 1e3))  # noqa: E731
+    wrong = lambda study, watch: (np.ones(1), lambda shares: np.full((len(shares), 1), 1e3))  # noqa: E731
     monkeypatch.setattr(studied, "_budget", wrong)
     seen = []
-    with pytest.raises(InputError, match=r'in the mean over 8 points, more than 15 %: use fidelity = "full"'):
+    with pytest.raises(
+        InputError, match=r'of hdr by \d+ % in the mean over 8 points, more than 15 %: use fidelity = "full"'
+    ):
         perform_study(read_study(str(file)), Watch(workers=1, on_check=seen.append))
     assert seen[0].mean_off > 0.15
 
 
 def test_the_check_is_of_sizes():
-    check = Check(np.zeros((2, 1)), np.array([2.0, 4.0]), np.array([2.4, 3.2]))
+    check = Check("hdr", np.zeros((2, 1)), np.array([2.0, 4.0]), np.array([2.4, 3.2]))
     np.testing.assert_allclose(check.off, [0.2, -0.2])
     assert check.mean_off == pytest.approx(0.2)
     with pytest.raises(InputError, match="20 %"):
         check.require()
-    Check(np.zeros((2, 1)), np.array([2.0, 4.0]), np.array([2.2, 3.6])).require()
+    Check("hdr", np.zeros((2, 1)), np.array([2.0, 4.0]), np.array([2.2, 3.6])).require()
 
 
 @pytest.mark.parametrize(
@@ -119,7 +142,7 @@ def test_the_check_is_of_sizes():
     [
         ("samples = 16", "samples = 20", "power of 2"),
         ('"hdr"', '"hrd"', "hrd"),
-        ('method = "hdr"', 'method = "hdr"\nmetric = "error"', "metric"),
+        ('methods = ["hdr"]', 'methods = ["hdr"]\nmetric = "error"', "metric"),
         ("hdr.theta_w_deg_s", "hdr.theta", "hdr.theta: unknown; did you mean theta_w_deg_s"),
         ("from = 0.2", "from = -0.2", "theta_w_deg_s = -0.2"),
         ("hdr.theta_w_deg_s", "imu.gyro.bandwidth_hz", "not proportional"),
@@ -127,7 +150,7 @@ def test_the_check_is_of_sizes():
         ("[morris]", "[moris]", "moris"),
         ("short.toml", "shrt.toml", "shrt"),
         ('fidelity = "budget"', 'fidelity = "fast"', "fidelity"),
-        ('method = "hdr"', 'method = "iez"', "'hdr' is not among iez"),
+        ('["hdr"]', '["iez"]', "'hdr' is not among iez"),
     ],
 )
 def test_what_is_wrong_in_a_file_is_told_in_one_sentence(file, cli, here, before, after, reason):
@@ -143,7 +166,7 @@ def test_what_is_wrong_in_a_file_is_told_in_one_sentence(file, cli, here, before
 def test_a_study_asks_something_of_several_parameters(file):
     text = file.read_text()
     with pytest.raises(InputError, match=r"neither \[morris\] nor \[sobol\]"):
-        build_study("x", {"scenario": "short.toml", "parameters": {}}, "x")
+        build_study("x", {"description": "x", "scenario": "short.toml", "parameters": {}}, "x")
     file.write_text(text[: text.index('"hdr.theta')] + text[text.index("[morris]") :])
     with pytest.raises(InputError, match="at least 2"):
         read_study(str(file))
