@@ -13,6 +13,7 @@ from footfall.late import late
 from footfall.scenarios.judge.gate import unit_of
 from footfall.scenarios.parameters import Documents
 from footfall.scenarios.report.sensitivity import WORDS, finite_or_none
+from footfall.scenarios.report.sensitivity_figures import short
 from footfall.scenarios.report.style import label_of, new_figure, save
 from footfall.scenarios.report.tables import new_table, titled
 from footfall.scenarios.studies.map import ErrorMap
@@ -108,7 +109,7 @@ def draw_map(found: ErrorMap, metric: str, over: str, scenario: str, path: Path)
         name(factor.address)
         if factor.log:
             at = factor.at(np.linspace(0, 1, 5))
-            ticks(at, [f"{value:.2g}" for value in at])
+            ticks(at, [short(value) for value in at])
     axis.minorticks_off()
     axis.grid(visible=False)
     bar = figure.colorbar(mesh, ax=axis, extend="max")

@@ -14,6 +14,7 @@ from rich.text import Text
 
 from footfall.late import late
 from footfall.scenarios.judge.gate import unit_of
+from footfall.scenarios.judge.verdict import figure
 from footfall.scenarios.report.style import label_of
 from footfall.scenarios.report.tables import new_table, titled
 from footfall.scenarios.studies.check import LIMIT, Check
@@ -107,7 +108,7 @@ def _morris(factors: Sequence[Factor], found: Sequence[Screened]) -> Table:
     table = new_table("parameter", "mu*", "+-", "sigma")
     for i in sorted(range(len(found)), key=lambda i: -found[i].mu_star):
         figures = (found[i].mu_star, found[i].half, found[i].sigma)
-        table.add_row(factors[i].name, *(f"{value:.3g}" for value in figures))
+        table.add_row(factors[i].name, *(figure(value) for value in figures))
     return table
 
 

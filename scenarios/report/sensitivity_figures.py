@@ -63,7 +63,11 @@ def draw_indices(found: Found, path: Path) -> None:
             entitle(axis, label_of(one.method))
     bars[0].legend(loc="lower right", frameon=False, fontsize=8)
     for place, (axis, one) in enumerate(zip(ways, found.answers, strict=bool(sobol))):
-        _converge(axis, one, order, found, legend=place == 0)
+        _converge(axis, one, order, found)
+        axis.set_ylabel("total index" if place == 0 else "")
+    if len(ways):
+        handles, labels = ways[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower right", ncols=3, frameon=False, fontsize=7)
     figure.suptitle(_title(found), x=0.01, ha="left", fontsize=10)
     save(figure, path)
 
@@ -94,7 +98,7 @@ def _morris_bars(axis: Axes, one: Answer, order: list[int], found: Found) -> Non
     axis.set_xlabel(f"change of the {'log error' if file.of == 'ratio' else unit_of(file.metric)}")
 
 
-def _converge(axis: Axes, one: Answer, order: list[int], found: Found, *, legend: bool) -> None:
+def _converge(axis: Axes, one: Answer, order: list[int], found: Found) -> None:
     samples = np.array([step.samples for step in one.convergence])
     for place, i in enumerate(order[:6]):
         colour = _COLOURS[place]
@@ -104,11 +108,8 @@ def _converge(axis: Axes, one: Answer, order: list[int], found: Found, *, legend
         label = textwrap.shorten(found.study.factors[i].name, 34)
         axis.plot(samples, value, "o-", ms=3, lw=1.3, color=colour, label=label)
     axis.set_xscale("log", base=2)
-    axis.set_xticks(samples[::2], [str(n) for n in samples[::2]])
+    axis.set_xticks(samples, [str(n) for n in samples])
     axis.set_xlabel("samples N")
-    axis.set_ylabel("total index" if legend else "")
-    if legend:
-        axis.legend(framealpha=0.8, edgecolor="none", fontsize=7, loc="upper right")
 
 
 def draw_effects(found: Found, path: Path) -> None:
@@ -148,13 +149,18 @@ def _effect(
         if factor.log:
             axis.set_xscale("log")
             ends = factor.at(np.array([0.0, 0.5, 1.0]))
-            axis.set_xticks(ends, [f"{value:.2g}" for value in ends])
+            axis.set_xticks(ends, [short(value) for value in ends])
             axis.minorticks_off()
     there = np.unique(bins)
     low, middle, high = np.array([np.percentile(scores[bins == b], [10, 50, 90]) for b in there]).T
     if band:
         axis.fill_between(x[there], low, high, color=TOTAL, alpha=0.6, lw=0)
     axis.plot(x[there], middle, "o-", ms=2.5, lw=1.4, color=colour, label=label)
+
+
+def short(value: float) -> str:
+    """Two digits, without an exponent where that is not shorter."""
+    return f"{float(f'{value:.2g}'):g}"
 
 
 def plain_log(axis: Axes) -> None:
