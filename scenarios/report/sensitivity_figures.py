@@ -26,6 +26,7 @@ from footfall.scenarios.studies.sensitivity import Answer, Found
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
 
 FIRST, TOTAL = "#1f6fb4", "#a9cbe6"
 _WHISKER: Any = {"color": "#222222", "elinewidth": 1.0, "capsize": 2.5, "fmt": "none"}
@@ -126,7 +127,8 @@ def draw_effects(found: Found, path: Path) -> None:
             _effect(axis, factors[i], share, scores, colour, band=single, label=label_of(one.method))
             axis.axhline(one.nominal, color=colour, lw=0.8, ls=":")
         entitle(axis, _wrapped(factors[i], 34, unit=True))
-    plain_log(axes[0])
+    axes[0].set_yscale("log")
+    plain_log(axes[0].yaxis)
     label_edges(axes, "", f"error ({unit_of(found.study.file.metric)})")
     if not single:
         axes[0].legend(frameon=False, fontsize=7)
@@ -163,14 +165,13 @@ def short(value: float) -> str:
     return f"{float(f'{value:.2g}'):g}"
 
 
-def plain_log(axis: Axes) -> None:
-    """A logarithmic y axis whose ticks are plain numbers."""
+def plain_log(axis: Axis) -> None:
+    """Plain numbers at 1, 2 and 5 of each decade of an x or y axis that is logarithmic."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-    axis.set_yscale("log")
-    axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.yaxis.set_minor_formatter(NullFormatter())
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def _wrapped(factor: Factor, width: int = _WIDE, *, unit: bool = False) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from footfall.scenarios.judge.gate import unit_of
 from footfall.scenarios.judge.statistics import spread
 from footfall.scenarios.judge.verdict import figure
 from footfall.scenarios.report.sensitivity import WORDS, finite_or_none
+from footfall.scenarios.report.sensitivity_figures import plain_log
 from footfall.scenarios.report.style import entitle, label_of, new_panels, save
 from footfall.scenarios.report.tables import new_table, titled
 from footfall.scenarios.studies.tuning import Tuned
@@ -123,15 +125,17 @@ def draw_tuning(tuned: Tuned, path: Path) -> None:
     finite = np.maximum(both[np.isfinite(both)], 0.01)
     ends = [finite.min() / 1.3, finite.max() * 1.3]
     for axis, (side, errors), colour in zip(axes, _sides(tuned).items(), ("#9a9a9a", "#1f6fb4"), strict=True):
-        axis.loglog(ends, ends, color="#222222", lw=0.8)
-        axis.loglog(*np.maximum(errors, 0.01), "o", ms=4, alpha=0.7, mew=0, color=colour)
+        axis.set(xscale="log", yscale="log")
+        axis.plot(ends, ends, color="#222222", lw=0.8)
+        axis.plot(*np.maximum(errors, 0.01), "o", ms=4, alpha=0.7, mew=0, color=colour)
         middle = [np.median(row[np.isfinite(row)]) for row in errors]
         axis.plot(*middle, "X", ms=10, mfc="#c1440e", mec="white")
         what = "chosen on these" if side == "train" else "never seen"
-        entitle(
-            axis, f"{side}, {errors.shape[1]} cases, {what}: median {middle[0]:.3g} -> {middle[1]:.3g} {unit}"
-        )
+        medians = f"median {figure(middle[0])} -> {figure(middle[1])} {unit}"
+        entitle(axis, f"{side}: {errors.shape[1]} cases, {what}\n{medians}")
         axis.set_xlabel(f"default ({unit})")
     axes[0].set_ylabel(f"tuned ({unit})")
-    drawn.suptitle(f"{tuned.tuning.name}: {tuned.advice}", x=0.01, ha="left", fontsize=10)
+    plain_log(axes[0].xaxis)
+    plain_log(axes[0].yaxis)
+    drawn.suptitle(textwrap.fill(f"{tuned.tuning.name}: {tuned.advice}", 76), x=0.01, ha="left", fontsize=10)
     save(drawn, path)
