@@ -53,6 +53,11 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         raise InputError(f"cannot be written ({error.strerror or error})", target) from None
 
 
+def is_csv(path: str | os.PathLike[str]) -> bool:
+    """Whether a file's name ends so; any other is Parquet."""
+    return Path(path).suffix.lower() == ".csv"
+
+
 def write_table(
     path: str | os.PathLike[str],
     columns: Columns,
@@ -61,7 +66,9 @@ def write_table(
     *,
     smooth: bool = False,
 ) -> None:
-    """Write equally long one-dimensional columns to Parquet.
+    """Write equally long one-dimensional columns to Parquet, or to CSV where the name ends so.
+
+    CSV holds the numbers to their last bit, and neither units nor provenance.
 
     Parameters
     ----------
@@ -75,6 +82,11 @@ def write_table(
     table = pa.table({name: _array(values) for name, values in columns.items()})
     split = [name for name, values in columns.items() if smooth and values.dtype.kind == "f"]
     with replacing(path) as temporary:
+        if is_csv(path):
+            with temporary.open("wb") as file:
+                file.write(",".join(table.column_names).encode() + b"\n")  # pyarrow quotes them
+                pa_csv.write_csv(table, file, pa_csv.WriteOptions(include_header=False, quoting_style="none"))
+            return
         pq.write_table(
             table.replace_schema_metadata(schema_meta),
             temporary,
@@ -85,8 +97,14 @@ def write_table(
         )
 
 
-def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+def read_table(
+    path: str | os.PathLike[str], only: Sequence[str] | None = None
+) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """Read a Parquet or (by its ending) CSV file.
+
+    Parameters
+    ----------
+    only : the columns that are needed, of Parquet; others of a large file are left unread
 
     Returns
     -------
@@ -96,12 +114,15 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
     Raises
     ------
     InputError
-        The file is absent, unreadable, or a column is not numeric.
+        The file is absent, unreadable, or a column is not numeric; one of `only` is missing.
     """
     source = _file(path)
-    kind = "CSV" if source.suffix.lower() == ".csv" else "Parquet"
+    kind = "CSV" if is_csv(source) else "Parquet"
     try:
-        table = pa_csv.read_csv(source) if kind == "CSV" else pq.ParquetFile(source).read()
+        if kind == "CSV":
+            table = pa_csv.read_csv(source)
+        else:
+            table = pq.ParquetFile(source).read(None if only is None else list(only))
         names = table.column_names
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise _unreadable(source, kind, error) from None
@@ -113,11 +134,12 @@ def read_table(path: str | os.PathLike[str]) -> tuple[dict[str, np.ndarray], dic
         if not (pa.types.is_floating(holds) or pa.types.is_integer(holds) or pa.types.is_boolean(holds)):
             raise InputError(f"column {name!r} holds {holds}, expected numbers", source)
         columns[name] = numbers(column.chunks)
+    require_columns(str(source), columns, tuple(only or ()))
     return columns, _meta(source, table.schema)
 
 
 def read_meta(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """The provenance in a Parquet file, without its columns; empty for a file that Footfall did not write.
+    """The provenance in a Parquet file, without its columns; empty for CSV and for others' files.
 
     Raises
     ------
@@ -125,8 +147,24 @@ def read_meta(path: str | os.PathLike[str]) -> dict[str, Any]:
         The file is absent or unreadable.
     """
     source = _file(path)
+    return {} if is_csv(source) else _meta(source, _schema(source))
+
+
+def read_units(path: str | os.PathLike[str]) -> dict[str, str]:
+    """Column -> unit as a Parquet file says it; empty for CSV and for others' files.
+
+    Raises
+    ------
+    InputError
+        The file is absent or unreadable.
+    """
+    source = _file(path)
+    return {} if is_csv(source) else _told(source, _schema(source), UNITS_KEY)
+
+
+def _schema(source: Path) -> Any:
     try:
-        return _meta(source, pq.read_schema(source))
+        return pq.read_schema(source)
     except (pa.ArrowException, OSError) as error:
         raise _unreadable(source, "Parquet", error) from None
 
@@ -140,14 +178,13 @@ def column_names(path: str | os.PathLike[str]) -> list[str]:
         The file is absent or unreadable.
     """
     source = _file(path)
-    kind = "CSV" if source.suffix.lower() == ".csv" else "Parquet"
+    if not is_csv(source):
+        return list(_schema(source).names)
     try:
-        if kind == "CSV":
-            with pa_csv.open_csv(source) as opened:
-                return list(opened.schema.names)
-        return list(pq.read_schema(source).names)
+        with pa_csv.open_csv(source) as opened:
+            return list(opened.schema.names)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        raise _unreadable(source, kind, error) from None
+        raise _unreadable(source, "CSV", error) from None
 
 
 def _file(path: str | os.PathLike[str]) -> Path:
@@ -194,13 +231,17 @@ def _unreadable(source: Path, kind: str, error: Exception) -> InputError:
 
 
 def _meta(source: Path, schema: Any) -> dict[str, Any]:
+    return _told(source, schema, META_KEY)
+
+
+def _told(source: Path, schema: Any, key: bytes) -> dict[str, Any]:
     try:
-        meta = json.loads((schema.metadata or {}).get(META_KEY, b"{}"))
+        found = json.loads((schema.metadata or {}).get(key, b"{}"))
     except ValueError:
-        meta = None
-    if not isinstance(meta, dict):
-        raise InputError(f"its metadata {META_KEY.decode()!r} is not a JSON object", source)
-    return meta
+        found = None
+    if not isinstance(found, dict):
+        raise InputError(f"its metadata {key.decode()!r} is not a JSON object", source)
+    return found
 
 
 def require_columns(source: str, columns: Columns, names: tuple[str, ...]) -> None:

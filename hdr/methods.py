@@ -12,6 +12,8 @@ from footfall.hdr.command import command_method
 from footfall.hdr.directions import DirectionParams
 from footfall.hdr.hde import Hde, Hde2010Params, HdeParams
 from footfall.hdr.hdr import HdrParams
+from footfall.hdr.hypotheses.params import HypothesesParams
+from footfall.hdr.hypotheses.track import hypotheses_track, smoothed_track
 from footfall.hdr.ihde import Ihde, IhdeParams
 from footfall.hdr.ihde_plus import IhdePlus, IhdePlusParams
 from footfall.hdr.jimenez import FilterHdr, FilterHdrParams, Jimenez, JimenezParams
@@ -64,6 +66,14 @@ def _pdr(reckoning: Reckoning, _: None) -> Track:
 
 def _hdr(reckoning: Reckoning, params: HdrParams) -> Track:
     return hdr_track(reckoning.footfalls, params)
+
+
+def _hypotheses(reckoning: Reckoning, params: HypothesesParams) -> Track:
+    return hypotheses_track(reckoning.footfalls, params)
+
+
+def _hypotheses_smooth(reckoning: Reckoning, params: HypothesesParams) -> Track:
+    return smoothed_track(reckoning.footfalls, params)
 
 
 def _iez(reckoning: Reckoning, settings: FilterSettings) -> Track:
@@ -126,6 +136,20 @@ METHODS: Mapping[str, Method] = MappingProxyType(
                 "Heuristic Drift Reduction, the basic controller of section 2",
                 _hdr,
                 HdrParams.basic(),
+                needs="footfalls",
+            ),
+            Method(
+                "hypotheses",
+                "straight, curve or turn, with a physical drift: a filter over hypotheses",
+                _hypotheses,
+                HypothesesParams(),
+                needs="footfalls",
+            ),
+            Method(
+                "hypotheses-smooth",
+                "hypotheses with hindsight: what the whole walk says of every footfall",
+                _hypotheses_smooth,
+                HypothesesParams(),
                 needs="footfalls",
             ),
             Method(

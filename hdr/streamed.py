@@ -47,6 +47,6 @@ class StreamedReckoning(Reckoning):
         """
         raise InputError(
             "too long to be held at once, which this method needs: "
-            "cut it, or choose a method on footfalls (pdr, hdr, hdr-basic, hde-2010)",
+            "cut it, or choose a method on footfalls (pdr, hdr, hdr-basic, hypotheses, hde-2010)",
             "recording",
         )

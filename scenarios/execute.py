@@ -19,7 +19,6 @@ from typing import Any, NamedTuple
 from footfall.errors import InputError
 from footfall.models.policy import stock_policy
 from footfall.scenarios.trial import Kept, Outcome, Row, Trial, failed, perform, walk_of
-from footfall.scenarios.warm import warm
 from footfall.simulate.cache import is_cached, plan_key
 from footfall.simulate.walk import Walk
 
@@ -111,6 +110,13 @@ def execute(
         run = _here if workers <= 1 else partial(_spread, workers=workers, to_walk=to_walk)
         report = on_progress or (lambda now: None)
         yield from _in_order(run(work, _Places(folder, store), frozenset(keep), progress, report))
+
+
+def warm(trial: Trial, *, walks: bool) -> None:
+    """`footfall.scenarios.warm.warm`: the physics are loaded where something is to be done."""
+    from footfall.scenarios import warm as compiling
+
+    compiling.warm(trial, walks=walks)
 
 
 def _in_order(found: Iterator[tuple[int, Outcome]]) -> Iterator[Outcome]:

@@ -5,11 +5,16 @@ from __future__ import annotations
 import os
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
+from footfall.errors import InputError
 from footfall.pdr.track import Track, read_track
 from footfall.recording import is_truth
+from footfall.settings import did_you_mean
 from footfall.simulate.walk import Walk, read_walk
 from footfall.tables import read_table, replacing
+
+NAMES = ("t", "x", "y", "z", "qx", "qy", "qz", "qw")
 
 
 def tum_poses(poses: Track | Walk) -> np.ndarray:
@@ -29,15 +34,41 @@ def write_tum(poses: Track | Walk, path: str | os.PathLike[str]) -> None:
         np.savetxt(temporary, tum_poses(poses), fmt="%.9f")
 
 
-def export_tum(source: str | os.PathLike[str], target: str | os.PathLike[str]) -> int:
-    """Write the file of a track or a walk as TUM text; returns the number of poses.
+def write_kitti(poses: Track | Walk, path: str | os.PathLike[str]) -> None:
+    """Write poses as KITTI odometry text: a line a pose, the 3 x 4 matrix (R | p) row by row; no times."""
+    tum = tum_poses(poses)
+    pose = np.concatenate([Rotation.from_quat(tum[:, 4:]).as_matrix(), tum[:, 1:4, None]], axis=2)
+    with replacing(path) as temporary:
+        np.savetxt(temporary, pose.reshape(len(pose), 12), fmt="%.9f")
+
+
+def write_csv(poses: Track | Walk, path: str | os.PathLike[str]) -> None:
+    """Write poses as CSV: t, x, y, z, qx, qy, qz, qw under a line of these names (s, m)."""
+    with replacing(path) as temporary:
+        np.savetxt(
+            temporary, tum_poses(poses), fmt="%.9f", delimiter=",", header=",".join(NAMES), comments=""
+        )
+
+
+# Format -> what writes it.
+FORMATS = {"tum": write_tum, "kitti": write_kitti, "csv": write_csv}
+
+
+def export(source: str | os.PathLike[str], target: str | os.PathLike[str], format: str = "tum") -> int:
+    """Write the file of a track or a walk for other tools; returns the number of poses.
+
+    Parameters
+    ----------
+    format : one of `FORMATS`
 
     Raises
     ------
     InputError
-        It is neither, or cannot be written.
+        No such format; the file is neither, or cannot be written.
     """
+    if format not in FORMATS:
+        raise InputError(f"format {format!r} is unknown{did_you_mean(format, FORMATS)}")
     columns, _ = read_table(source)
     poses = read_walk(source) if is_truth(columns) else read_track(source)
-    write_tum(poses, target)
+    FORMATS[format](poses, target)
     return len(poses.t)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
@@ -18,6 +19,7 @@ from footfall.tables import replacing
 
 if TYPE_CHECKING:
     from footfall.scenarios.trial import Trial
+    from footfall.simulate.cache import CachedWalk
 
 _FIELDS = ("t", "interval", "distance", "rate", "position", "heading")
 _STRIDES = tuple(item.name for item in fields(Strides))
@@ -53,7 +55,10 @@ def read_footfalls(file: Path) -> Reckoned | None:
         with np.load(file, allow_pickle=False) as kept:
             columns = {name: kept[name] for name in _FIELDS}
             strides = Strides(**{name: kept[f"stride_{name}"] for name in _STRIDES})
-            return Reckoned(Footfalls(**columns, strides=strides), str(kept["recording_sha"]))
+            found = Reckoned(Footfalls(**columns, strides=strides), str(kept["recording_sha"]))
+        with suppress(OSError):  # when it was last used
+            os.utime(file)
+        return found
     except (OSError, ValueError, KeyError, EOFError):
         return None
 
@@ -73,3 +78,47 @@ def footfalls_folder() -> Path:
     from footfall.simulate.cache import cache_folder
 
     return cache_folder() / "footfalls"
+
+
+class KeptFile(NamedTuple):
+    """Footfalls in the cache: size in bytes, and s since 1970 when they were last read or written."""
+
+    file: Path
+    size: int
+    used: float
+
+
+def kept_footfalls(folder: Path | None = None) -> list[KeptFile]:
+    """What is kept, the last used first."""
+    found = []
+    for file in (folder or footfalls_folder()).glob("*/*.npz"):
+        with suppress(OSError):  # removed meanwhile
+            told = file.stat()
+            found.append(KeptFile(file, told.st_size, told.st_mtime))
+    return sorted(found, key=lambda one: (-one.used, one.file.name))
+
+
+def prune(keep: int) -> tuple[list[CachedWalk], list[KeptFile]]:
+    """Remove walks and footfalls that were not used for longest, until the others fit into `keep` bytes.
+
+    Returns
+    -------
+    The walks and the footfalls that were removed.
+    """
+    from footfall.simulate import cache
+
+    footfalls = kept_footfalls()
+    every: list[CachedWalk | KeptFile] = [*cache.cached_walks(), *footfalls]
+    every.sort(key=lambda one: (-one.used, one.file.name))
+    total, walks, fits = 0, 0, True
+    removed = []
+    for one in every:
+        fits = fits and total + one.size <= keep
+        if not fits:
+            removed += [one] if isinstance(one, KeptFile) else []
+            continue
+        total += one.size
+        walks += 0 if isinstance(one, KeptFile) else one.size
+    for one in removed:
+        one.file.unlink(missing_ok=True)
+    return cache.prune(walks), removed

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
 import platformdirs
@@ -16,10 +17,10 @@ from footfall.identity import digest_of
 from footfall.models.policy import Policy, stock_policy
 from footfall.simulate.plan import Plan, versions
 from footfall.simulate.walk import Walk, footfalls_path, read_walk, write_walk
-from footfall.simulate.walking import walk
 from footfall.sources import stage_digest
 from footfall.tables import read_meta
 
+_versions = lru_cache(versions)  # packages' metadata are slow to read, and a study has many walks
 _POLL_S = 0.2  # between looks at a walk that another process is walking
 _ABANDONED_S = 3600.0  # after which a file that is being written is not any more
 
@@ -51,7 +52,14 @@ def cache_folder() -> Path:
 
 def plan_key(plan: Plan, policy: Policy) -> str:
     """Hash of everything that determines the walk. A plan's name does not."""
-    return digest_of(versions(), stage_digest("walk"), policy.digest, plan.digest)[:32]
+    return digest_of(_versions(), stage_digest("walk"), policy.digest, plan.digest)[:32]
+
+
+def walk(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | None) -> Walk:
+    """`footfall.simulate.walking.walk`: the physics are loaded where something is to be walked."""
+    from footfall.simulate import walking
+
+    return walking.walk(plan, policy, on_progress)
 
 
 def is_cached(key: str, folder: Path | None = None) -> bool:

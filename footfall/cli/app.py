@@ -24,6 +24,7 @@ from footfall.cli.map import map_
 from footfall.cli.parameters import parameters
 from footfall.cli.record import record
 from footfall.cli.render import render
+from footfall.cli.report import report
 from footfall.cli.run import run
 from footfall.cli.score import score
 from footfall.cli.sensitivity import sensitivity
@@ -74,6 +75,7 @@ COMMANDS = (
     sensitivity,
     map_,
     tune,
+    report,
     export,
     allan,
 )

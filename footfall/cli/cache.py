@@ -1,4 +1,4 @@
-"""`footfall cache`: which walks are kept, and how much of them."""
+"""`footfall cache`: which walks and footfalls are kept, and how much of them."""
 
 from __future__ import annotations
 
@@ -13,9 +13,12 @@ from footfall.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from footfall.scenarios.store import KeptFile
     from footfall.simulate.cache import CachedWalk
 
-cache = typer.Typer(help="List the walks that are kept, or remove those that were not used for longest.")
+cache = typer.Typer(
+    help="List the walks and footfalls that are kept, or remove those that were not used for longest."
+)
 
 
 @cache.callback(invoke_without_command=True)
@@ -26,13 +29,15 @@ def _cache(context: typer.Context) -> None:
 
 @cache.command("list")
 def list_(as_json: JsonOption = False) -> None:
-    """Show what is kept: size, scenario, seed and last use of each walk."""
+    """Show what is kept: size, scenario, seed and last use of each walk, and the footfalls of studies."""
     from footfall.scenarios.report.tables import new_table
+    from footfall.scenarios.store import kept_footfalls
     from footfall.simulate.cache import cache_folder, cached_walks
 
-    walks = cached_walks()
+    walks, footfalls = cached_walks(), kept_footfalls()
     if as_json:
-        print_json({"folder": str(cache_folder()), "bytes": _total(walks), "walks": _rows(walks)})
+        told = {"folder": str(cache_folder()), "bytes": _total(walks), "walks": _rows(walks)}
+        print_json(told | {"footfalls": {"cases": len(footfalls), "bytes": _total(footfalls)}})
         return
     table = new_table("scenario", "subject", "seed", "size\nMB", "last used", "file", left=2)
     for one in walks:
@@ -49,6 +54,8 @@ def list_(as_json: JsonOption = False) -> None:
         OUT.print(table)
     count = "1 walk" if len(walks) == 1 else f"{len(walks)} walks"
     say(f"{count}, {_megabytes(walks)} in {cache_folder()}")
+    if footfalls:
+        say(f"and the footfalls of {len(footfalls):,} cases of studies, {_megabytes(footfalls)}")
 
 
 @cache.command()
@@ -56,16 +63,22 @@ def prune(
     keep: Annotated[str, typer.Option(metavar="SIZE", help="How much stays, such as 500MB or 10GB.")],
     as_json: JsonOption = False,
 ) -> None:
-    """Remove the walks that were not used for longest, until the others fit into --keep."""
+    """Remove the walks and footfalls that were not used for longest, until the others fit into --keep."""
+    from footfall.scenarios.store import kept_footfalls
+    from footfall.scenarios.store import prune as remove
     from footfall.simulate.cache import cached_walks
-    from footfall.simulate.cache import prune as remove
 
-    removed = remove(_bytes(keep))
-    left = cached_walks()
+    removed, forgotten = remove(_bytes(keep))
+    left, kept = cached_walks(), kept_footfalls()
     if as_json:
-        print_json({"removed": _rows(removed), "bytes_removed": _total(removed), "bytes": _total(left)})
+        told = {"removed": _rows(removed), "bytes_removed": _total(removed), "bytes": _total(left)}
+        footfalls = {"cases_removed": len(forgotten), "cases": len(kept), "bytes": _total(kept)}
+        print_json(told | {"footfalls": footfalls})
         return
     say(f"{len(removed)} removed, {_megabytes(removed)}; {len(left)} left, {_megabytes(left)}")
+    if forgotten or kept:
+        gone, stay = f"{len(forgotten):,} removed", f"{len(kept):,} left"
+        say(f"footfalls: {gone}, {_megabytes(forgotten)}; {stay}, {_megabytes(kept)}")
 
 
 def _bytes(text: str) -> int:
@@ -100,9 +113,9 @@ def _when(one: CachedWalk) -> str:
     return datetime.fromtimestamp(one.used).astimezone().isoformat(timespec="seconds")
 
 
-def _total(walks: Sequence[CachedWalk]) -> int:
-    return sum(one.size for one in walks)
+def _total(files: Sequence[CachedWalk | KeptFile]) -> int:
+    return sum(one.size for one in files)
 
 
-def _megabytes(walks: Sequence[CachedWalk]) -> str:
-    return f"{_total(walks) / 1e6:,.0f} MB"
+def _megabytes(files: Sequence[CachedWalk | KeptFile]) -> str:
+    return f"{_total(files) / 1e6:,.0f} MB"

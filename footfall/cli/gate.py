@@ -16,7 +16,11 @@ from footfall.errors import InputError
 def gate(
     gates: Annotated[
         str,
-        typer.Argument(help="Your TOML file of gates (docs/gates.md), or a name that comes with Footfall."),
+        typer.Argument(
+            help="Your TOML file of gates (docs/gates.md), a name that comes with Footfall, or `list` to see "
+            "those.",
+            show_default=False,
+        ),
     ],
     units: Annotated[
         int | None, typer.Option(min=1, help="How many cases; the file says if left out.", show_default=False)
@@ -57,8 +61,9 @@ def gate(
 ) -> None:
     """Judge methods over many units of an IMU: pass, fail or undecided, with bounds that hold.
 
-    Exit code 0 when all gates pass, 1 when one fails, 3 when none fails and some are undecided. The folder
-    gets gate.json and cases.parquet.
+    Exit code 0 when all gates pass, 1 when one fails, 3 when none fails and some are undecided.
+
+    The folder gets gate.json and cases.parquet.
     """
     from footfall.scenarios.report.gate_files import append_text, write_bytes, write_gate
     from footfall.scenarios.report.gates import cases_line, gate_document, gate_report
@@ -72,6 +77,9 @@ def gate(
     from footfall.scenarios.studies.gate import read_baselines, scored, walks_cached
     from footfall.scenarios.studies.gate_file import read_gates
 
+    if gates == "list":
+        _list(as_json)
+        return
     if sum((units is not None, quick, sequential is not None)) > 1:
         raise InputError("--units, --quick and --sequential: expected one of them")
     read = read_gates(gates)
@@ -80,9 +88,11 @@ def gate(
     if cache_key:
         print(key_of(read))
         return
-    for file, ending in ((record, ".parquet"), (junit, ".xml")):
+    for file, ending in ((record, ".parquet"), (junit, ".xml"), (markdown, None)):
         if file is not None:
-            require_output(file, ending, Path(read.source))
+            require_output(file, file.suffix.lower() if ending is None else ending, Path(read.source))
+    if record is None:
+        read_baselines(read)  # before any work
     say(f"{cases_line(read)}; {walks_cached(read)} walks in the cache")
     if record is not None:
         with showing() as progress:
@@ -90,7 +100,6 @@ def gate(
         write_baseline(rows, record)
         say(f"Scores of {', '.join(dict.fromkeys(row.method for row in rows))} are in {record}")
         return
-    read_baselines(read)  # before any work
     looks = _looks(sequential)
     folder = out or Path("out") / read.name
     with results_folder(folder):
@@ -110,6 +119,20 @@ def gate(
     say(f"Verdicts and cases are in {folder}")
     if judged.exit_code:
         raise typer.Exit(judged.exit_code)
+
+
+def _list(as_json: bool) -> None:
+    from footfall.scenarios.report.tables import new_table
+    from footfall.scenarios.studies.gate_file import described, stock_gates
+
+    known = described(stock_gates())
+    if as_json:
+        print_json(known)
+        return
+    table = new_table("gates", "what", left=2)
+    for name, text in known.items():
+        table.add_row(name, text)
+    OUT.print(table)
 
 
 def _looks(text: str | None) -> tuple[int, ...]:

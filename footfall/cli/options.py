@@ -12,7 +12,10 @@ from footfall.cli.terminal import finite
 ScenarioArgument = Annotated[
     str, typer.Argument(help="A scenario that comes with Footfall (see `footfall list`), or your TOML file.")
 ]
-OutputOption = Annotated[Path, typer.Option("--output", "-o", help="Parquet file to write.")]
+OutputOption = Annotated[
+    Path,
+    typer.Option("--output", "-o", help="File to write: .parquet, or .csv, which holds the numbers alone."),
+]
 NoCacheOption = Annotated[
     bool, typer.Option("--no-cache", help="Walk even if this walk is in the cache, and do not keep it there.")
 ]

@@ -17,7 +17,7 @@ from footfall.cli.options import (
     UnitOption,
     WithoutOption,
 )
-from footfall.cli.terminal import ERR, finite, require_output, say
+from footfall.cli.terminal import ERR, TABLES, finite, require_output, say
 from footfall.errors import InputError
 
 
@@ -87,9 +87,9 @@ def record(
     from footfall.simulate.walk import footfalls_path, read_walk
 
     if walk is not None and from_recording is None:
-        require_output(output, ".parquet", walk, footfalls_path(walk))
+        require_output(output, TABLES, walk, footfalls_path(walk))
     elif from_recording is not None and walk is None:
-        require_output(output, ".parquet", from_recording)
+        require_output(output, TABLES, from_recording)
     else:
         raise InputError("record: expected either a walk or --from-recording with a recording")
     if walk is not None and (format != "auto" or unit or rate is not None):

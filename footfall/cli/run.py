@@ -16,10 +16,11 @@ from footfall.cli.options import (
     SetOption,
     WithoutOption,
 )
-from footfall.cli.terminal import ERR, OUT, finite, print_json, say
+from footfall.cli.terminal import ERR, OUT, command_line, finite, print_json, say
 
 
 def run(
+    context: typer.Context,
     scenario: ScenarioArgument,
     walks: Annotated[
         int | None, typer.Option(min=1, help="How many walks; the scenario says if left out.")
@@ -82,7 +83,8 @@ def run(
 ) -> None:
     """Do it all: walk a scenario, record it, navigate by each method and score the tracks.
 
-    The folder gets scores.json, every walk, recording and track (Parquet) and the figures (PNG).
+    The folder gets report.html to look at, scores.json, every walk, recording and track (Parquet) and the
+    figures (PNG).
     """
     from footfall.cli.choices import dropped_effects, methods_of, told_directions
     from footfall.identity import plain
@@ -107,7 +109,8 @@ def run(
     with results_folder(folder):
         with showing() as progress:
             results = perform_run(todo, use_cache=not no_cache, on_progress=progress)
-        document = run_document(name, results, plain(values), dropped)
+        command = command_line(context, "out", "no_cache", "as_json")
+        document = run_document(name, results, plain(values), dropped, command)
         with ERR.status("writing files and figures"):
             write_results(results, document, folder)
     if as_json:
@@ -115,4 +118,4 @@ def run(
     else:
         for part in run_report(name, results):
             OUT.print(part)
-    say(f"Scores, walks, tracks and figures are in {folder}")
+    say(f"Scores, walks, tracks and figures are in {folder}; look at {folder / 'report.html'}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -50,6 +51,9 @@ def blaming(file: Path | str, part: str = "recording") -> Iterator[None]:
         raise error.about(file, part) from None
 
 
+TABLES = (".parquet", ".csv")  # what tables are written as
+
+
 def require_output(file: Path, ending: str | tuple[str, ...], *inputs: Path) -> None:
     """Refuse a file that cannot or must not be written before any work is done.
 
@@ -70,6 +74,20 @@ def require_output(file: Path, ending: str | tuple[str, ...], *inputs: Path) -> 
     for source in inputs:
         if file.exists() and source.exists() and file.samefile(source):
             raise InputError("would overwrite what it is made from", file)
+
+
+def command_line(context: typer.Context, *but: str) -> str:
+    """The command as it was given, to be given again, without the options of the parameters `but`."""
+    words = context.command_path.split()
+    for parameter in context.command.params:
+        source = context.get_parameter_source(str(parameter.name))
+        if parameter.name in but or source is None or source.name != "COMMANDLINE":
+            continue
+        value = context.params[parameter.name]
+        values = value if isinstance(value, (list, tuple)) else [value]
+        option = [] if parameter.param_type_name == "argument" else [parameter.opts[0]]
+        words += option if value is True else [word for item in values for word in (*option, str(item))]
+    return shlex.join(words)
 
 
 def perform(app: typer.Typer, arguments: list[str] | None) -> int:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from footfall.cli.options import FormatOption, OutputOption, RateOption, SetOption, UnitOption
-from footfall.cli.terminal import ERR, blaming, finite, require_output, say
+from footfall.cli.terminal import ERR, TABLES, blaming, finite, require_output, say
 
 
 def track(
@@ -79,7 +79,7 @@ def track(
     from footfall.pdr.reckoning import PdrParams
     from footfall.pdr.track import write_track
 
-    require_output(output, ".parquet", recording)
+    require_output(output, TABLES, recording)
     if bias_time is not None:
         with blaming("--bias-time", "pdr"):
             PdrParams(bias_s=bias_time)

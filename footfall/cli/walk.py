@@ -9,7 +9,7 @@ import typer
 from rich.progress import Progress
 
 from footfall.cli.options import NoCacheOption, ScenarioArgument, SetOption
-from footfall.cli.terminal import ERR, finite, require_output, say
+from footfall.cli.terminal import ERR, TABLES, finite, require_output, say
 from footfall.errors import InputError
 
 
@@ -62,7 +62,7 @@ def walk(
     from footfall.simulate.walking import walk as walk_anew
 
     if output is not None:
-        require_output(output, ".parquet")
+        require_output(output, TABLES)
     elif not view:
         raise InputError("Missing option '--output' / '-o' (see `footfall walk --help`)")
     require_areas(values := parsed(settings or ()), ("scenario",), "walk")

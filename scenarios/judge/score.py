@@ -8,9 +8,9 @@ distances are horizontal.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Literal, cast, get_args
+from typing import Any, Literal, Protocol, cast, get_args
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from footfall.errors import InputError
 from footfall.identity import WalkIdentity
 from footfall.pdr.track import Track
 from footfall.scenarios.judge.rigid import RigidMotion, rigid_fit, turn_between
-from footfall.simulate.walk import Walk
+from footfall.simulate.walk import TrueFootfalls, Walk
 
 TIME_SLACK = 0.1  # s; an IMU's clock may run off by this much over a walk
 UNCOVERED = 5.0  # s; a track that leaves out more of the walk's start or end is not judged
@@ -70,16 +70,33 @@ class Comparison:
     ----------
     t : (n,) s
     estimate, truth : (n, 2) m, on the plane
+    heading : (n,) rad, the true one, continuous
     heading_error : (n,) rad, estimate - truth, continuous; from -pi to pi in row 0
     """
 
     t: np.ndarray
     estimate: np.ndarray
     truth: np.ndarray
+    heading: np.ndarray
     heading_error: np.ndarray
 
 
-def compare(track: Track, walk: Walk, align: Align = "none") -> Comparison:
+class Poses(Protocol):
+    """Of a `Walk` what a track is put beside."""
+
+    @property
+    def t(self) -> np.ndarray: ...
+    @property
+    def position(self) -> np.ndarray: ...
+    @property
+    def quaternion(self) -> np.ndarray: ...
+    @property
+    def footfalls(self) -> TrueFootfalls: ...
+    @property
+    def meta(self) -> Mapping[str, Any]: ...
+
+
+def compare(track: Track, walk: Poses, align: Align = "none") -> Comparison:
     """Put a track beside the truth at its times.
 
     The true heading is read at the track's rows alone: between stances the foot pitches through the vertical,
@@ -113,7 +130,7 @@ def compare(track: Track, walk: Walk, align: Align = "none") -> Comparison:
         motion = _motion(estimate, truth, float(error[0]), align)
         estimate, error = motion(estimate), error + motion.turn
     # Whole turns mean nothing at the start.
-    return Comparison(track.t, estimate, truth, error - error[0] + wrap(error[0]))
+    return Comparison(track.t, estimate, truth, heading, error - error[0] + wrap(error[0]))
 
 
 def _motion(estimate: np.ndarray, truth: np.ndarray, off: float, align: Align) -> RigidMotion:
@@ -197,7 +214,7 @@ def require_align(name: str) -> Align:
     return cast(Align, name)
 
 
-def require_scorable(track: Track, walk: Walk) -> None:
+def require_scorable(track: Track, walk: Poses) -> None:
     """Raise InputError where a track cannot be judged against a walk."""
     made, own = WalkIdentity.of(track.meta), WalkIdentity.of(walk.meta)
     if made is not None and own is not None and made != own:
@@ -228,7 +245,7 @@ def require_scorable(track: Track, walk: Walk) -> None:
         )
 
 
-def _quaternion_at(walk: Walk, t: np.ndarray) -> np.ndarray:
+def _quaternion_at(walk: Poses, t: np.ndarray) -> np.ndarray:
     """(n, 4) attitude at (n,) times: linear between samples, which at a stance hardly differ."""
     i = np.clip(np.searchsorted(walk.t, t) - 1, 0, len(walk.t) - 2)
     before, after = walk.quaternion[i], walk.quaternion[i + 1]

@@ -20,3 +20,9 @@ def spread(values: Sequence[float] | np.ndarray) -> dict[str, float]:
 def extent(values: Sequence[float] | np.ndarray) -> dict[str, float]:
     """Median, smallest and largest."""
     return {"median": float(np.median(values)), "smallest": float(min(values)), "largest": float(max(values))}
+
+
+def running_mean(values: np.ndarray, count: int = 25) -> np.ndarray:
+    """Mean over so many neighbours, of the same length: fewer of them at the ends."""
+    kernel = np.ones(min(count, len(values)))
+    return np.convolve(values, kernel, "same") / np.convolve(np.ones(len(values)), kernel, "same")

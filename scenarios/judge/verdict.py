@@ -45,6 +45,7 @@ class Verdict:
     needed : how many cases would decide, at the present estimate
     scatter : standard deviation of the cases' log ratios
     cases, left_out : how many count, and how many do not because both methods failed in them
+    failed, failure : in how many of them the method came to no score, and the first reason
     """
 
     name: str
@@ -63,6 +64,8 @@ class Verdict:
     scatter: float | None = None
     cases: int = 0
     left_out: int = 0
+    failed: int = 0
+    failure: str = ""
 
 
 @dataclass(frozen=True)

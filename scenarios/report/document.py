@@ -27,6 +27,7 @@ def run_document(
     results: Sequence[Result],
     settings: Mapping[str, Any] | None = None,
     without: Sequence[str] = (),
+    command: str | None = None,
 ) -> dict[str, Any]:
     """The document of `run --json` (docs/scores.md).
 
@@ -34,9 +35,12 @@ def run_document(
     ----------
     settings : address -> value, in place of what the documents say
     without : sensor effects that were switched off
+    command : that makes the run again
     """
     document: dict[str, Any] = {
         "scenario": scenario,
+        "description": results[0].trial.setup.scenario.file.description,
+        **({"command": command} if command else {}),
         "distance_m": float(np.mean([distance_m(result) for result in results])),
         "duration_s": float(np.mean([_duration_s(result) for result in results])),
         **({"settings": dict(settings)} if settings else {}),

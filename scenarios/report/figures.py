@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from footfall.scenarios.judge.score import compare
+from footfall.scenarios.judge.statistics import running_mean
 from footfall.scenarios.report.style import (
     COLOURS,
     MORE,
@@ -174,12 +175,6 @@ def filtered_rates(results: Sequence[Result], method: str = "hdr", count: int = 
     return figure
 
 
-def _smooth(values: np.ndarray, strides: int = 25) -> np.ndarray:
-    """Running mean that keeps its length: shorter at the ends."""
-    kernel = np.ones(min(strides, len(values)))
-    return np.convolve(values, kernel, "same") / np.convolve(np.ones(len(values)), kernel, "same")
-
-
 def controller(results: Sequence[Result], method: str = "hdr") -> Figure:
     """The controller's -I beside the true drift, which the paper could not know."""
     figure, axes = new_panels(
@@ -192,7 +187,7 @@ def controller(results: Sequence[Result], method: str = "hdr") -> Figure:
     for axis, result in zip(axes, results, strict=True):
         track, budget = result.tracks[method], result.budget
         began = track.t[0]
-        drift = _smooth(np.degrees(budget.total))
+        drift = running_mean(np.degrees(budget.total))
         axis.plot((budget.t - began) / 60, drift, color=TRUTH, lw=1.6, alpha=0.55, label="true drift")
         minutes = (track.t - began) / 60
         integrator = -np.degrees(track.evidence["integrator"])

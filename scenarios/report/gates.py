@@ -147,7 +147,12 @@ def verdict_line(verdict: Verdict) -> str:
     estimate, bounds, limit = _cells(verdict)
     between = f" ({bounds})" if bounds else ""
     reason = f": {verdict.reason}" if verdict.reason else ""
-    return f"{verdict.verdict}: {verdict.name}: {estimate}{between}, limit {limit}{reason}"
+    failed = (
+        f"; {verdict.failed} of {verdict.cases + verdict.left_out} cases failed: {verdict.failure}"
+        if verdict.failed
+        else ""
+    )
+    return f"{verdict.verdict}: {verdict.name}: {estimate}{between}, limit {limit}{reason}{failed}"
 
 
 def _cells(verdict: Verdict) -> tuple[str, str, str]:

@@ -17,6 +17,7 @@ from footfall.pdr.track import write_track
 from footfall.recording import write_recording
 from footfall.scenarios.report.figures import FIGURES, run_figures
 from footfall.scenarios.report.heading_figures import HEADING_FIGURES, heading_figures
+from footfall.scenarios.report.page import write_page
 from footfall.scenarios.run import Result
 from footfall.simulate.budget import write_budget
 from footfall.simulate.walk import write_walk
@@ -50,7 +51,7 @@ def results_folder(folder: Path) -> Iterator[None]:
 
 
 def write_results(results: Sequence[Result], document: Mapping[str, Any], folder: Path) -> None:
-    """scores.json, every walk's Parquet files and the figures, into the existing `folder`.
+    """scores.json, every walk's Parquet files, the figures and the page, into the existing `folder`.
 
     They are written aside and moved in when all are there, so that nothing half-written is ever seen. What an
     earlier run left there under such names goes: the folder speaks of one run alone.
@@ -99,3 +100,4 @@ def _write_all(results: Sequence[Result], document: Mapping[str, Any], folder: P
     run_figures(results, folder)
     heading_figures(results, folder)
     (folder / "scores.json").write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+    write_page(folder)

@@ -18,6 +18,7 @@ from footfall.tables import META_KEY
 _STAGES = {"walk": "the walker", "record": "the sensor's model"}  # stage of the sources -> in words
 
 Case = tuple[Any, ...]
+_CASE = ("scenario", "number", "walk_seed", "unit_seed", "noise_seed")  # the recording's hash tells the rest
 
 
 @dataclass(frozen=True)
@@ -27,12 +28,12 @@ class Baseline:
     Attributes
     ----------
     source : the file
-    rows : method -> case -> columns
+    rows : method -> case -> the rows of that case, which differ in sheet or settings
     made : versions and sources that made the recordings, by name
     """
 
     source: str
-    rows: Mapping[str, Mapping[Case, Mapping[str, Any]]]
+    rows: Mapping[str, Mapping[Case, Sequence[Mapping[str, Any]]]]
     made: Mapping[str, str]
 
 
@@ -59,9 +60,9 @@ def read_baseline(path: str | os.PathLike[str]) -> Baseline:
         No such file, or not one of rows of scores.
     """
     found = read_rows(path)
-    rows: dict[str, dict[Case, Mapping[str, Any]]] = {}
+    rows: dict[str, dict[Case, list[Mapping[str, Any]]]] = {}
     for row in found.to_pylist():
-        rows.setdefault(row["method"], {})[_case(row)] = row
+        rows.setdefault(row["method"], {}).setdefault(_case(row), []).append(row)
     told = json.loads((found.schema.metadata or {}).get(META_KEY, b"{}"))
     return Baseline(os.fspath(path), rows, told.get("made", {}))
 
@@ -83,20 +84,25 @@ def matched(baseline: Baseline, rows: Sequence[Row]) -> list[Mapping[str, Any]]:
     require_method(baseline, rows[0].method)
     kept, found = baseline.rows[rows[0].method], []
     for row in rows:
-        other = kept.get(_case(row.as_dict()))
-        if other is None:
+        others = kept.get(_case(row.as_dict()), [])
+        if not others:
             raise InputError(
                 f"{len(kept)} cases of {row.method}, and none of {row.scenario}, walk seed {row.walk_seed}, "
-                f"{row.imu}, unit {row.unit_seed}: make it anew",
+                f"unit {row.unit_seed}: make it anew",
                 baseline.source,
             )
-        if other["recording_sha"] != row.recording_sha:
+        same = [other for other in others if other["recording_sha"] == row.recording_sha]
+        if not same:
             raise InputError(
                 f"was made on other recordings ({_difference(baseline.made)}): make it anew, or compare with "
                 "a method",
                 baseline.source,
             )
-        found.append(other)
+        if len(same) > 1:
+            raise InputError(
+                f"several rows of {row.method} on one recording: which of them?", baseline.source
+            )
+        found.append(same[0])
     return found
 
 
@@ -114,4 +120,4 @@ def _difference(made: Mapping[str, str]) -> str:
 
 
 def _case(row: Mapping[str, Any]) -> Case:
-    return tuple(row[name] for name in ("scenario", "number", "walk_seed", "imu", "unit_seed", "noise_seed"))
+    return tuple(row[name] for name in _CASE)

@@ -22,6 +22,7 @@ from footfall.scenarios.execute import Progress, execute
 from footfall.scenarios.judge.bounds import ALPHA
 from footfall.scenarios.judge.gate import METRICS
 from footfall.scenarios.judge.verdict import Scores, Verdict, decide, weigh
+from footfall.scenarios.store import footfalls_folder
 from footfall.scenarios.studies.baseline import Baseline, matched, read_baseline, require_method
 from footfall.scenarios.studies.gate_file import Gates, needed, read_gates
 from footfall.scenarios.trial import Row, Trial
@@ -146,7 +147,8 @@ def scored(
     found: list[Row] = []
     trials = _trials(gates)[units.start : units.stop]
     workers = travelling(gates.setup.methods, workers)
-    done = execute(trials, workers=workers, use_cache=use_cache, on_progress=on_progress)
+    store = footfalls_folder() if use_cache else None
+    done = execute(trials, workers=workers, use_cache=use_cache, store=store, on_progress=on_progress)
     with closing(done):
         for outcome in done:
             for row in outcome.rows:
@@ -175,7 +177,12 @@ def judge(
         elif one.against is not None:
             against = _scores(rows.of(one.against))
         found.append(weigh(one, _scores(own), against, gates.margin_percent(one), alpha))
-    return decide(found, alpha)
+    return [_with_failures(verdict, rows.of(verdict.method)) for verdict in decide(found, alpha)]
+
+
+def _with_failures(verdict: Verdict, rows: Rows) -> Verdict:
+    failures = rows.failures
+    return replace(verdict, failed=len(failures), failure=failures[0].error) if failures else verdict
 
 
 def walks_cached(gates: Gates) -> int:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import Field
 
@@ -19,7 +19,8 @@ from footfall.pdr.track import Track
 from footfall.scenarios.judge.bounds import ALPHA, fewest
 from footfall.scenarios.judge.gate import Gate
 from footfall.scenarios.parameters import documents, with_values
-from footfall.scenarios.scenario import STOCK, Seed
+from footfall.scenarios.scenario import STOCK, Seed, stock_scenarios
+from footfall.scenarios.studies.methods import MethodEntry, beside, method_of
 from footfall.scenarios.trial import Setup
 from footfall.settings import did_you_mean
 from footfall.toml import Strict, checked, parse_toml
@@ -45,40 +46,13 @@ class CasesTable(Strict):
     units: Annotated[int, Field(ge=1)] | None = None
 
 
-class MethodTable(Strict):
-    """A method that does not come with Footfall, or one that does under another name: `find_method`."""
-
-    name: Annotated[str, Field(min_length=1)]
-    use: str | None = None
-    command: Annotated[tuple[str, ...], Field(strict=False, min_length=1)] | None = None
-    params: dict[str, Any] = Field({})
-    format: str = "f64"
-    timeout_s: Annotated[float, Field(gt=0)] = 60.0
-    needs: Literal["footfalls", "samples"] | None = None
-
-    def method(self, folder: Path) -> Method:
-        """The method itself; files are looked for in `folder`."""
-        use = self.use
-        if use is not None and (place := use.rpartition(":")[0]).endswith(".py"):
-            use = str(folder / place) + use[len(place) :]
-        return find_method(
-            use,
-            name=self.name,
-            params=self.params or None,
-            command=self.command,
-            format=self.format,
-            timeout_s=self.timeout_s,
-            needs=self.needs,
-        )
-
-
 class GatesFile(Strict):
     """Gates as they stand in TOML; `set` holds values by address (`footfall parameters`)."""
 
     description: str = ""
     cases: CasesTable
     set: dict[str, Any] = Field({})
-    methods: Annotated[tuple[MethodTable, ...], Field(strict=False)] = ()
+    methods: Annotated[tuple[MethodEntry, ...], Field(strict=False)] = ()
     gates: Annotated[tuple[Gate, ...], Field(strict=False, min_length=1)]
 
 
@@ -149,6 +123,12 @@ def stock_gates() -> tuple[str, ...]:
     return tuple(sorted(file.name.removesuffix(ENDING) for file in STOCK.glob(f"*{ENDING}")))
 
 
+def described(names: Iterable[str]) -> dict[str, str]:
+    """Gates that come with Footfall -> what they are about."""
+    files = ((name, STOCK / f"{name}{ENDING}") for name in names)
+    return {name: checked(parse_toml(file), GatesFile, str(file)).description for name, file in files}
+
+
 def read_gates(
     source: str | os.PathLike[str], methods: Mapping[str, Method | Callable[..., Track]] | None = None
 ) -> Gates:
@@ -177,22 +157,19 @@ def read_gates(
 
 def _resolved(file: GatesFile, path: Path, given: Mapping[str, Method | Callable[..., Track]]) -> Gates:
     _require_once("gate", [gate.name for gate in file.gates])
-    _require_once("method", [table.name for table in file.methods])
+    own = [method_of(entry, path.parent) for entry in file.methods]
+    _require_once("method", [method.name for method in own])
+    known = {name: find_method(name) for name in (*METHODS, *entry_point_names())}
+    known |= {method.name: method for method in own}
+    known |= {name: find_method(method, name=name) for name, method in given.items()}
+    names = _names(file.gates)
+    if unknown := [name for name in names if name not in known]:
+        raise InputError(f"method {unknown[0]!r}: unknown{did_you_mean(unknown[0], known)}")
     folder, cases = path.parent, file.cases
-    own = {table.name: table for table in file.methods}
-    found: dict[str, Method] = {}
-    for name in _names(file.gates):
-        if name in given:
-            found[name] = find_method(given[name], name=name)
-        elif name in own:
-            found[name] = own[name].method(folder)
-        elif name in METHODS or name in entry_point_names():
-            found[name] = find_method(name)
-        else:
-            known = [*given, *own, *METHODS, *entry_point_names()]
-            raise InputError(f"method {name!r}: unknown{did_you_mean(name, known)}")
-    scenario = str(folder / cases.scenario) if cases.scenario.endswith(".toml") else cases.scenario
-    base = documents(scenario, imu=cases.imu, methods=found.values())
+    scenario = cases.scenario if cases.scenario in stock_scenarios() else beside(cases.scenario, folder)
+    imu = None if cases.imu is None else beside(cases.imu, folder)
+    found = [known[name] for name in names]
+    base = documents(scenario, imu=imu, methods=found)
     setup = with_values(base, file.set).setup()
     uncorrected = all(is_uncorrected(method) for method in setup.methods)
     seeds = setup.scenario.seeds

@@ -17,9 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from footfall.errors import InputError
-from footfall.scenarios.execute import telling, worker_pool
+from footfall.scenarios.execute import telling, warm, worker_pool
 from footfall.scenarios.studies.task import Done, Task, do, do_walk, lost
-from footfall.scenarios.warm import warm
 from footfall.simulate.cache import is_cached
 
 _TICK_S = 0.2

@@ -210,7 +210,7 @@ class StudyFolder:
             exact = [file for file in files if file.stem == task.name]
             wanted = set(task.cells)
             for file in exact or files:
-                part = read_rows(file)
+                part = _read(file)
                 keys = part["key"].to_pylist()
                 if wanted.issuperset(keys):
                     found.append(part)
@@ -220,6 +220,15 @@ class StudyFolder:
             if wanted:
                 raise InputError(f"rows of task {task.key} are missing: start the sweep again", self.path)
         return pa.concat_tables(found)
+
+
+def _read(file: Path) -> Any:
+    """A part; one that cannot be read goes, so that its task is done again."""
+    try:
+        return read_rows(file)
+    except InputError:
+        file.unlink(missing_ok=True)
+        raise InputError("was damaged, and is removed: start the sweep again", file) from None
 
 
 def _whole(file: Path) -> bool:

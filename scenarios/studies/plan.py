@@ -271,6 +271,8 @@ def _sorted(values: Any) -> tuple[Any, ...]:
 
 def _label(address: str, unit: str) -> str:
     """The last step of an address, without its unit, in words."""
+    if address == "imu":
+        return "IMU"
     name = address.rsplit(".", 1)[-1]
     ending = "_" + unit.replace("/", "_").replace("-", "_").lower()
     return name.removesuffix(ending).replace("_", " ").strip() if unit else name.replace("_", " ")

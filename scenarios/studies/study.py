@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field
 
 from footfall.errors import InputError
 from footfall.hdr.method import Method
@@ -19,8 +19,9 @@ from footfall.scenarios.parameters import AREAS, Documents, documents, with_valu
 from footfall.scenarios.run import OTHER_UNITS_FROM
 from footfall.scenarios.scenario import stock_scenarios
 from footfall.scenarios.studies.design import DesignTable
+from footfall.scenarios.studies.methods import MethodEntry, beside, method_of
 from footfall.scenarios.trial import find
-from footfall.toml import Strict, checked, parse_toml
+from footfall.toml import Strict, checked, no_such_file, parse_toml
 
 STOCK = Path(__file__).parent / "stock"
 FIRST = ("imu", "pdr.detector")  # what other addresses are inside of is set before them
@@ -35,30 +36,6 @@ class CasesTable(Strict):
     first_unit: int = Field(default=OTHER_UNITS_FROM, ge=0)
     noises: int = Field(default=1, ge=1)
     crossed: bool = False
-
-
-class MethodTable(Strict):
-    """A method with parameters or of others: `find_method`."""
-
-    name: str | None = None
-    use: str | None = None
-    command: Annotated[tuple[str, ...], Field(strict=False, min_length=1)] | None = None
-    format: str = "f64"
-    timeout_s: float = Field(default=60.0, gt=0)
-    params: dict[str, Any] = Field(default={})
-    needs: Literal["footfalls", "samples"] | None = None
-
-    @model_validator(mode="after")
-    def _one(self) -> MethodTable:
-        if (self.use is None) == (self.command is None):
-            raise ValueError("a method has a use (such as hdr or nav.py:Mine) or a command")
-        return self
-
-
-MethodEntry = Annotated[
-    Annotated[str, Tag("name")] | Annotated[MethodTable, Tag("table")],
-    Discriminator(lambda entry: "name" if isinstance(entry, str) else "table"),
-]
 
 
 class StudyFile(Strict):
@@ -104,8 +81,7 @@ class Study:
         if (name := os.fspath(name_or_path)) in stock_studies():
             file = STOCK / f"{name}.toml"
         elif not (file := Path(name)).is_file():
-            stock = ", ".join(stock_studies())
-            raise InputError(f"study {name!r}: neither a stock study ({stock}) nor a TOML file that exists")
+            raise no_such_file("study", name, stock_studies())
         return cls(file.stem, parse_toml(file), file.parent, str(file))
 
     def set(self, values: Mapping[str, Any]) -> Study:
@@ -141,7 +117,7 @@ class Study:
             None at all, one that cannot be found, or two of one name.
         """
         with self.blamed():
-            found = find([*map(self._method, self.file.methods), *self.objects])
+            found = find([*(method_of(entry, self.folder) for entry in self.file.methods), *self.objects])
             if not found:
                 raise InputError("methods: expected at least one")
             return found
@@ -171,7 +147,7 @@ class Study:
         told |= {address: value for address, value in values.items() if address not in told}
         if "imu" in told:  # called in the rows as it is written here
             name = str(told.pop("imu"))
-            base = with_values(base, {"imu": name if name in stock_specs() else self._beside(name)})
+            base = with_values(base, {"imu": name if name in stock_specs() else beside(name, self.folder)})
             base = replace(base, sheet=replace(base.sheet, name=name))
         return with_values(base, told)
 
@@ -200,29 +176,7 @@ class Study:
         return replace(self, table={**self.table, table: {**self.table.get(table, {}), **values}})
 
     def _scenario(self, entry: str) -> str:
-        return entry if entry in stock_scenarios() else self._beside(entry)
-
-    def _method(self, entry: str | MethodTable) -> Method:
-        if isinstance(entry, str):
-            return find_method(self._placed(entry))
-        told = entry.model_dump(exclude={"use", "command", "params"})
-        use = None if entry.use is None else self._placed(entry.use)
-        command = None if entry.command is None else [self._beside(word) for word in entry.command]
-        found = find_method(use, command=command, **told)
-        try:
-            return found.with_params(entry.params) if entry.params else found
-        except InputError as error:
-            raise InputError(f"{found.name}.{error}") from None
-
-    def _placed(self, use: str) -> str:
-        """`nav.py:Mine`, beside the study if it is there."""
-        place, colon, name = use.rpartition(":")
-        return f"{self._beside(place)}:{name}" if colon and place.endswith(".py") else use
-
-    def _beside(self, name: str) -> str:
-        """A file beside the study, if there is one of this name."""
-        beside = self.folder / name
-        return str(beside) if "." in name and not Path(name).is_absolute() and beside.is_file() else name
+        return entry if entry in stock_scenarios() else beside(entry, self.folder)
 
 
 class _Blamed:

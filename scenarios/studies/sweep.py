@@ -14,7 +14,7 @@ from footfall.errors import InputError
 from footfall.scenarios.execute import cores
 from footfall.scenarios.store import footfalls_folder
 from footfall.scenarios.studies.describe import write_document
-from footfall.scenarios.studies.local import Tick, spread
+from footfall.scenarios.studies.local import spread
 from footfall.scenarios.studies.parts import StudyFolder
 from footfall.scenarios.studies.plan import Plan, plan_of, task_seconds, walk_seconds
 from footfall.scenarios.studies.study import Study
@@ -127,7 +127,7 @@ def _done(
     left = place.left(plan.tasks)
     watch = _Watch(plan, left, place.path, warnings, on_progress)
     if left:
-        alike = _Alike()
+        alike = _Alike(over=len(left) < len(plan.tasks))  # others were done before
         for done in _executor(executor, left)(left, store=footfalls_folder(), stop=stop, tick=watch.tick):
             place.put(done)
             alike.see(done, place)
@@ -202,7 +202,7 @@ class _Watch:
     def add(self, done: Done) -> Progress:
         """A task."""
         self._worked += task_seconds(done.task, self._walks[done.task.walk])
-        if done.rows and done.rows[0].stage == "walk":
+        if done.task.walk in self._to_walk:
             self._metres[done.task.walk] = self._walks[done.task.walk].metres
         self.now = replace(
             self.now,
@@ -229,11 +229,11 @@ class _Watch:
 class _Alike:
     """Sees to it that a study all of which fails for one reason ends with that reason, and soon."""
 
-    def __init__(self) -> None:
+    def __init__(self, over: bool) -> None:
         self._reasons: frozenset[str] | None = None
         self._seen: set[str] = set()
         self._tasks: list[Task] = []
-        self._over = False
+        self._over = over
 
     def see(self, done: Done, place: StudyFolder) -> None:
         """One more task.
@@ -261,6 +261,3 @@ def _general(reason: str) -> str:
 
 def _recordings(tasks: Iterable[Task]) -> int:
     return sum(len(task.seeds) for task in tasks)
-
-
-__all__ = ["Progress", "StoppedError", "Tick", "sweep"]

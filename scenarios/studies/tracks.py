@@ -20,7 +20,7 @@ from footfall.scenarios.studies.rows import read_rows
 from footfall.scenarios.studies.task import Task
 from footfall.scenarios.trial import reckoning, recording_of
 from footfall.simulate.walk import Walk
-from footfall.tables import replacing, write_table
+from footfall.tables import numbers, replacing, write_table
 
 MOST = 12
 WHICH = ("median", "worst", "best")  # in this order, while there is room
@@ -52,7 +52,7 @@ def write_tracks(plan: Plan, place: StudyFolder, on_track: Callable[[], None]) -
 def chosen_rows(rows: Any) -> Iterator[tuple[dict[str, Any], str]]:
     """The rows whose tracks are kept, and which they are of their method's."""
     methods = list(dict.fromkeys(rows["method"].to_pylist()))
-    errors = np.array(rows[ERROR].to_numpy(zero_copy_only=False), float)
+    errors = numbers(rows[ERROR].chunks)
     names = np.array(rows["method"].to_pylist())
     ranked = {}
     for method in methods:

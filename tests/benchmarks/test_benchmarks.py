@@ -378,6 +378,11 @@ def test_scatter_is_that_of_the_strides_in_the_middle(capsys: pytest.CaptureFixt
     assert "1.2 (1.2 to 1.2)" in capsys.readouterr().out
 
 
+def test_a_perfect_imu_has_no_bias_that_a_scenario_gives(short: str) -> None:
+    assert load_scenario("ihde-test1").sensor.bias_shift_deg_s > 0
+    assert perfect_imu.without_bias("ihde-test1").sensor.bias_shift_deg_s == 0
+
+
 def test_a_perfect_imu_leaves_what_is_the_methods_own(short: str, tmp_path: Path) -> None:
     """On a short walk next to nothing, and a track that is turned by 5 deg is told as it is."""
     trial = Trial(setup(load_scenario(short), imu="perfect", methods=["pdr"]), 0, 1, 1, 1)

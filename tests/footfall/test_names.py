@@ -6,6 +6,7 @@ import sys
 import pytest
 
 import footfall
+import footfall.studies
 
 HEAVY = (
     "numpy",
@@ -39,6 +40,15 @@ def test_every_public_name_is_there():
     )
     assert told(f"import footfall; print({missing})") == "[]"
     assert told("from footfall import *; print(METHODS['hdr'].name, read.__name__)") == "hdr read"
+
+
+def test_the_door_to_studies_loads_nothing_before_it_is_used():
+    loaded = f"print([name for name in sys.modules if name.split('.')[0] in {HEAVY!r}])"
+    assert told(f"import sys, footfall.studies; {loaded}") == "[]"
+    names = "from footfall.studies import *; print(Study.__name__, sweep.__name__, parameters.__name__)"
+    assert told(names) == "Study sweep parameters"
+    with pytest.raises(AttributeError, match=r"module 'footfall\.studies' has no attribute 'Stduy'"):
+        footfall.studies.Stduy  # noqa: B018
 
 
 def test_an_unknown_name_is_refused_as_of_any_module():

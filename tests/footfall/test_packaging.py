@@ -59,6 +59,8 @@ def test_data_files_come_with_the_package():
     assert {"straight", "curving", "turning", "closed-loop", "closed-loop-gentle"}.issubset(stock_scenarios())
     assert stock_policy().weights
     assert files("footfall").joinpath("py.typed").is_file()
+    page = files("footfall.scenarios.report.page")
+    assert all(page.joinpath(name).is_file() for name in ("page.html", "page.css", "page.js", "tables.js"))
 
 
 def test_one_version():
@@ -149,3 +151,24 @@ def test_documented_keys_are_the_ones_that_exist(checkout):
     for table in [*tables, Straight, Arc, Corner]:
         for key in getattr(table, "model_fields", {}):
             assert re.search(rf"[`\[ ]{key}[`\] ]", scenarios), key
+
+
+def test_the_readme_of_package_indices_leads_to_the_repository(checkout):
+    """Links and pictures, by the substitutions that the build makes; of the owner that project.urls names."""
+    told = tomllib.loads((checkout / "pyproject.toml").read_text())
+    hook = told["tool"]["hatch"]["metadata"]["hooks"]["fancy-pypi-readme"]
+    owner = told["project"]["urls"]["Repository"].removeprefix("https://github.com/")
+    text = (checkout / "README.md").read_text()
+    before = re.findall(r"\]\(([^)]+)\)", text)
+    for substitution in hook["substitutions"]:
+        text = re.sub(substitution["pattern"], substitution["replacement"], text)
+    after = re.findall(r"(!?)\[[^\]]*\]\(([^)]+)\)", text)
+    assert len(after) == len(before)
+    for old, (picture, new) in zip(before, after, strict=True):
+        if "://" in old:
+            assert new == old
+        elif picture:
+            assert new == f"https://raw.githubusercontent.com/{owner}/v$HFPR_VERSION/{old}"
+        else:
+            assert new == f"https://github.com/{owner}/blob/v$HFPR_VERSION/{old}"
+    assert all(owner.split("/")[0] in url for url in told["project"]["urls"].values())

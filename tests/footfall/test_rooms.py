@@ -18,7 +18,7 @@ KNOWS = {
 }
 ROOT = Path(footfall.__file__).parent
 # The front door: public names, imported when they are used, and `python -m footfall`.
-DOOR = {"__init__.py", "__main__.py", "_gymnasium.py"}
+DOOR = {"__init__.py", "__main__.py", "_gymnasium.py", "studies.py"}
 
 
 def modules(file: Path) -> set[str]:

@@ -1,7 +1,6 @@
 """Columns in files: what is written comes back, and nobody ever meets half a file."""
 
 import errno
-import json
 import os
 import stat
 
@@ -14,7 +13,16 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from footfall.errors import InputError
-from footfall.tables import META_KEY, UNITS_KEY, numbers, read_table, replacing, require_columns, write_table
+from footfall.tables import (
+    META_KEY,
+    numbers,
+    read_meta,
+    read_table,
+    read_units,
+    replacing,
+    require_columns,
+    write_table,
+)
 
 names = st.text(st.characters(codec="utf-8", exclude_characters="\0"), min_size=1, max_size=12)
 kinds = st.sampled_from([np.float64, np.float32, np.int64, np.int32, np.uint8, np.bool_])
@@ -43,7 +51,33 @@ def test_columns_units_and_provenance_come_back(tmp_path_factory, table, meta, s
         assert back[name].tobytes() == values.tobytes()
         assert back[name].flags.writeable
     assert found == meta
-    assert json.loads(pq.read_schema(path).metadata[UNITS_KEY]) == units
+    assert read_units(path) == units
+
+
+def test_only_the_columns_that_are_needed_are_read(tmp_path):
+    path = tmp_path / "x.parquet"
+    write_table(path, {name: np.arange(3.0) for name in "abc"}, {}, {"who": "me"})
+    columns, meta = read_table(path, ("c", "a"))
+    assert set(columns) == {"a", "c"}
+    assert meta == {"who": "me"}
+    with pytest.raises(InputError, match=r"x\.parquet: column 'd' is missing"):
+        read_table(path, ("a", "d"))
+
+
+@given(
+    hnp.arrays(np.float64, st.integers(0, 20), elements=st.floats(allow_nan=False, allow_infinity=False)),
+    st.lists(st.booleans(), min_size=20, max_size=20),
+)
+def test_csv_holds_numbers_to_their_last_bit(tmp_path_factory, values, flags):
+    columns = {"x": values, "flag": np.array(flags[: len(values)], dtype=bool)}
+    path = tmp_path_factory.mktemp("table") / "x.csv"
+    write_table(path, columns, {"x": "m", "flag": ""}, {"seed": 1})
+    assert path.read_text().splitlines()[0] == "x,flag"
+    if len(values):  # of no rows CSV does not say what they would hold
+        back, meta = read_table(path)
+        np.testing.assert_array_equal(back["x"], values)  # but for the sign of zero
+        np.testing.assert_array_equal(back["flag"], columns["flag"])
+        assert meta == read_meta(path) == {}
 
 
 def test_smooth_columns_are_small_without_a_dictionary_and_quantised_ones_with_one(tmp_path):

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from footfall.scenarios.judge.papers import HDR_TABLE_2, HDR_TABLE_2_MEAN
 from footfall.scenarios.judge.score import Score, mean_score
-from footfall.scenarios.judge.statistics import extent, spread
+from footfall.scenarios.judge.statistics import extent, running_mean, spread
 from footfall.scenarios.report import figures
 from footfall.scenarios.report.document import run_document
 from footfall.scenarios.report.tables import paper_table, path_line, run_report
@@ -201,6 +201,10 @@ def test_spread_lies_within_its_values(values):
     slack = 1e-9 * max(map(abs, values))
     assert all(min(values) - slack <= value <= max(values) + slack for value in found.values())
     assert found["median"] <= found["p90"] + slack
+
+
+def test_a_running_mean_is_of_fewer_at_the_ends():
+    np.testing.assert_allclose(running_mean(np.array([0.0, 3.0, 6.0, 0.0]), 3), [1.5, 3.0, 3.0, 3.0])
 
 
 # Figures

@@ -14,6 +14,7 @@ from footfall.hdr import methods
 from footfall.models.imu import TemperatureProfile, draw_unit, load_spec
 from footfall.recording import read_recording
 from footfall.scenarios.judge.score import score
+from footfall.scenarios.report.document import run_document
 from footfall.scenarios.report.results import results_folder, write_results
 from footfall.scenarios.run import OTHER_NOISES_FROM, OTHER_UNITS_FROM, parts, perform_run
 from footfall.scenarios.scenario import load_scenario
@@ -200,10 +201,10 @@ def test_workers_give_what_one_process_gives(workshop, done):
 def test_one_walk_in_the_folder_and_on_the_terminal(cli, here):
     code, out, err = cli("run short.toml --walks 1 --units 2 --noises 3 --out new/deep")
     assert code == 0
-    assert err == "Scores, walks, tracks and figures are in new/deep\n"
+    assert err == "Scores, walks, tracks and figures are in new/deep; look at new/deep/report.html\n"
     assert max(map(len, out.splitlines())) <= 80
     folder = here / "new" / "deep"
-    assert set(os.listdir(folder)) == files_of(1, "pdr", "hdr") | FIGURES | {"scores.json"}
+    assert set(os.listdir(folder)) == files_of(1, "pdr", "hdr") | FIGURES | {"scores.json", "report.html"}
     scores = one_document((folder / "scores.json").read_text())
     (row,) = scores["walks"]
     for name in ("pdr", "hdr"):
@@ -259,7 +260,12 @@ def test_the_json_on_standard_output_is_the_file(cli, here):
     assert code == 0
     document = one_document(out)
     assert document == json.loads((here / "out" / "short" / "scores.json").read_text())
-    assert set(document) == {"scenario", "distance_m", "duration_s", "versions", "walks", "mean"}
+    told = {"scenario", "description", "command", "distance_m", "duration_s", "versions", "walks", "mean"}
+    assert set(document) == told
+    assert document["description"] == "thirty metres round one corner"
+    assert document["command"] == (
+        "footfall run short.toml --walks 1 --imu perfect --methods pdr --units 0 --noises 0"
+    )
     assert (document["scenario"], document["walks"][0]["imu"]) == ("short", "perfect")
     assert document["distance_m"] == pytest.approx(30, abs=3)
     assert document["mean"]["pdr"]["heading_error_final_deg"] < 0.2
@@ -269,6 +275,7 @@ def test_the_json_on_standard_output_is_the_file(cli, here):
         "heading_error.png",
         "drift_budget.png",
         "scores.json",
+        "report.html",
     }
 
 
@@ -277,7 +284,8 @@ def test_a_later_run_leaves_nothing_of_an_earlier_one_and_all_of_its_users(cli, 
     for name in ("notes.txt", "walk-1.mine.parquet", "walk-2.png"):
         (here / "new" / name).write_text("mine")
     assert cli("run short.toml --walks 1 --noises 0 --units 0 --methods pdr --out new")[0] == 0
-    left = files_of(1, "pdr") | FIGURES - {"filtered_rates.png", "controller.png"} | {"scores.json"}
+    left = files_of(1, "pdr") | FIGURES - {"filtered_rates.png", "controller.png"}
+    left |= {"scores.json", "report.html"}
     assert set(os.listdir(here / "new")) == left | {"notes.txt", "walk-1.mine.parquet", "walk-2.png"}
 
 
@@ -332,7 +340,7 @@ def test_results_are_written_all_or_none(done, tmp_path, monkeypatch, trouble):
             expected, message = KeyboardInterrupt, None
     before = content(tmp_path)
     with pytest.raises(expected, match=message):
-        write_results([done], {"scenario": "short"}, tmp_path)
+        write_results([done], run_document("short", [done]), tmp_path)
     assert content(tmp_path) == before
 
 
@@ -346,6 +354,10 @@ def test_what_was_set_reaches_the_scores_and_is_told(cli, here):
     assert code == 0
     first, second = one_document(plain), one_document(out)
     assert "settings" not in first
+    assert second["command"] == (
+        "footfall run short.toml --walks 1 --methods pdr,hdr --units 0 --noises 0 --detector shoe "
+        "--bias-time 20.0 --only scale --set hdr.theta_w_deg_s=0.01"
+    )
     assert second["settings"] == {"pdr.detector": "shoe", "pdr.bias_s": 20.0, "hdr.theta_w_deg_s": 0.01}
     assert "scale" not in second["without"]
     assert {"white", "flicker"} <= set(second["without"])

@@ -139,9 +139,7 @@ def test_what_a_baseline_lacks_is_told(file):
     baseline(path)
     with pytest.raises(InputError, match=r"b\.parquet: no scores of hdr, only of pdr"):
         gate(file(HEAD + KEPT.replace("pdr", "hdr")))
-    with pytest.raises(
-        InputError, match="10 cases of pdr, and none of straight, walk seed 1, nimu, unit 1010: "
-    ):
+    with pytest.raises(InputError, match="10 cases of pdr, and none of straight, walk seed 1, unit 1010: "):
         gate(file(HEAD.replace("10", "12") + KEPT))
     (path.parent / "b.parquet").write_text("no table")
     with pytest.raises(InputError, match="not a readable Parquet file"):
@@ -198,6 +196,8 @@ def test_a_method_that_fails_is_infinitely_bad_there(file):
     failures = found.rows.of("mine").failures
     assert 0 < len(failures) < 10
     assert "positive at the end" in failures[0].error
+    assert (found[0].failed, found[0].failure) == (len(failures), failures[0].error)
+    assert (found[1].failed, found[1].failure) == (0, "")
     assert found[0].high == float("inf")
     assert found[1].low == pytest.approx(-100)  # where it alone failed, pdr is infinitely better
 

@@ -1,0 +1,61 @@
+"""Footfall's own gates in full, and defects that they must find in 20 cases.
+
+Every file of gates that comes with Footfall is judged over all of its cases. Then the gates of the closed
+loop are judged over 20 units with a mistake in the methods (`_defects.py`), one after the other.
+
+python -m benchmarks.validation.own_gates
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from benchmarks._common import options, out, write_json
+from benchmarks.validation._defects import DEFECTS
+from footfall.identity import plain
+from footfall.scenarios.report.gates import gate_report, verdict_line
+from footfall.scenarios.report.progress import showing
+from footfall.scenarios.report.tables import new_table, titled
+from footfall.scenarios.studies.gate import Judged, gate
+from footfall.scenarios.studies.gate_file import stock_gates
+
+FEW = 20
+
+
+def judged(name: str, processes: int, **keys: object) -> Judged:
+    """A file of gates, with progress."""
+    with showing() as progress:
+        return gate(name, workers=processes, on_progress=progress, **keys)  # type: ignore[arg-type]
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print the tables."""
+    parser = options(__doc__)
+    parser.add_argument("--quick", action="store_true", help="20 cases of each file")
+    parser.add_argument("--only", nargs="*", default=stock_gates(), help="names of files of gates")
+    chosen = parser.parse_args(arguments)
+
+    own = {name: judged(name, chosen.processes, quick=chosen.quick) for name in chosen.only}
+    for found in own.values():
+        for part in gate_report(found):
+            out.print(part)
+
+    defects = {
+        one.name: judged("closed-loop", chosen.processes, units=FEW, methods=one.methods) for one in DEFECTS
+    }
+    table = new_table("defect", f"what fails in {FEW} cases", left=2)
+    for name, found in defects.items():
+        lines = [verdict_line(verdict) for verdict in found if verdict.verdict == "fail"]
+        table.add_row(name, "\n".join(lines) or "nothing")
+    out.print(titled("Defects, and the gates of the closed loop", table))
+    write_json(
+        chosen.json,
+        {
+            "own": {name: [plain(verdict) for verdict in found] for name, found in own.items()},
+            "defects": {name: [plain(verdict) for verdict in found] for name, found in defects.items()},
+        },
+    )
+
+
+if __name__ == "__main__":
+    main()

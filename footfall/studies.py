@@ -1,0 +1,59 @@
+"""The front door to studies: `from footfall.studies import Study, sweep, gate, parameters`.
+
+The names are imported when they are first used.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from footfall.scenarios.judge.verdict import Verdict
+    from footfall.scenarios.parameters import documents, parameters
+    from footfall.scenarios.studies.gate import Judged, gate
+    from footfall.scenarios.studies.gate_file import read_gates, stock_gates
+    from footfall.scenarios.studies.plan import plan_of
+    from footfall.scenarios.studies.study import Study, stock_studies
+    from footfall.scenarios.studies.sweep import Progress, StoppedError, sweep
+
+__all__ = [
+    "Judged",
+    "Progress",
+    "StoppedError",
+    "Study",
+    "Verdict",
+    "documents",
+    "gate",
+    "parameters",
+    "plan_of",
+    "read_gates",
+    "stock_gates",
+    "stock_studies",
+    "sweep",
+]
+
+_HOMES = {
+    "Judged": "studies.gate",
+    "Progress": "studies.sweep",
+    "StoppedError": "studies.sweep",
+    "Study": "studies.study",
+    "Verdict": "judge.verdict",
+    "documents": "parameters",
+    "gate": "studies.gate",
+    "parameters": "parameters",
+    "plan_of": "studies.plan",
+    "read_gates": "studies.gate_file",
+    "stock_gates": "studies.gate_file",
+    "stock_studies": "studies.study",
+    "sweep": "studies.sweep",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    found = globals()[name] = getattr(import_module(f"footfall.scenarios.{_HOMES[name]}"), name)
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
