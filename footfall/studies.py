@@ -11,40 +11,51 @@ if TYPE_CHECKING:
     from footfall.scenarios.parameters import documents, parameters
     from footfall.scenarios.studies.gate import Judged, gate
     from footfall.scenarios.studies.gate_file import read_gates, stock_gates
+    from footfall.scenarios.studies.map import ErrorMap, error_map
     from footfall.scenarios.studies.plan import plan_of
+    from footfall.scenarios.studies.sensitivity import sensitivity
     from footfall.scenarios.studies.study import Study, stock_studies
     from footfall.scenarios.studies.sweep import Progress, StoppedError, sweep
+    from footfall.scenarios.studies.tuning import tuned
 
 __all__ = [
+    "ErrorMap",
     "Judged",
     "Progress",
     "StoppedError",
     "Study",
     "Verdict",
     "documents",
+    "error_map",
     "gate",
     "parameters",
     "plan_of",
     "read_gates",
+    "sensitivity",
     "stock_gates",
     "stock_studies",
     "sweep",
+    "tuned",
 ]
 
 _HOMES = {
+    "ErrorMap": "studies.map",
     "Judged": "studies.gate",
     "Progress": "studies.sweep",
     "StoppedError": "studies.sweep",
     "Study": "studies.study",
     "Verdict": "judge.verdict",
     "documents": "parameters",
+    "error_map": "studies.map",
     "gate": "studies.gate",
     "parameters": "parameters",
     "plan_of": "studies.plan",
     "read_gates": "studies.gate_file",
+    "sensitivity": "studies.sensitivity",
     "stock_gates": "studies.gate_file",
     "stock_studies": "studies.study",
     "sweep": "studies.sweep",
+    "tuned": "studies.tuning",
 }
 
 

@@ -58,7 +58,7 @@ def map_(
     from footfall.errors import InputError
     from footfall.scenarios.parameters import documents, parsed, with_values
     from footfall.scenarios.report.map import draw_map, map_document, map_report
-    from footfall.scenarios.report.progress import counting, showing
+    from footfall.scenarios.report.progress import watching
     from footfall.scenarios.studies.factors import Factor
     from footfall.scenarios.studies.map import error_map, factor_about, ranged
     from footfall.scenarios.studies.points import Worn, require_metric, require_over
@@ -75,7 +75,7 @@ def map_(
 
     if y.partition(".")[0] != name:
         raise InputError(f"{x} and {y}: expected two parameters of one method")
-    with counting("units heard") as heard, showing() as trials:
+    with watching("units heard") as (trials, (heard,)):
         found = error_map(
             base,
             factor(x, x_range),

@@ -36,7 +36,7 @@ def sensitivity(
 
     The folder gets sensitivity.json, points.parquet and the figures (PNG). Needs footfall[study].
     """
-    from footfall.scenarios.report.progress import counting, showing
+    from footfall.scenarios.report.progress import watching
     from footfall.scenarios.report.results import results_folder
     from footfall.scenarios.report.sensitivity import (
         check_report,
@@ -60,10 +60,11 @@ def sensitivity(
     asked = read_study(study, {} if fidelity is None else {"fidelity": fidelity})
     folder = out or Path("out") / asked.name
     with results_folder(folder):
-        with showing() as trials, counting("units heard") as heard:
+        with watching("points", "units heard") as (trials, (points, heard)):
             watch = Watch(
                 workers=workers,
                 store=folder / "footfalls",
+                on_points=points,
                 on_trials=trials,
                 on_cases=heard,
                 on_check=lambda check: ERR.print(check_report(asked, check)),

@@ -52,7 +52,7 @@ def tune(
     other methods need footfall[study].
     """
     from footfall.cli.choices import unit_range
-    from footfall.scenarios.report.progress import counting, showing
+    from footfall.scenarios.report.progress import watching
     from footfall.scenarios.report.results import results_folder
     from footfall.scenarios.report.tables import new_table
     from footfall.scenarios.report.tuning import tuning_document, tuning_report, write_tuning
@@ -80,7 +80,7 @@ def tune(
     asked = read_tuning(study, changes)
     folder = out or Path("out") / asked.name
     with results_folder(folder):
-        with counting("units heard") as heard, counting("sets tried") as tried, showing() as shown:
+        with watching("units heard", "sets tried") as (shown, (heard, tried)):
             tuned = perform_tuning(
                 asked, workers=workers, folder=folder, on_cases=heard, on_trials=shown, on_tried=tried
             )

@@ -10,36 +10,53 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from footfall.scenarios.execute import Progress as Done
 
+Show = Callable[[Done], None]
+Count = Callable[[int, int], None]  # how many are done, and how many there are
+
 
 @contextmanager
-def showing() -> Iterator[Callable[[Done], None]]:
+def showing() -> Iterator[Show]:
     """One bar for the metres walked and one for the trials; nothing where there is no terminal."""
+    with watching() as (show, _):
+        yield show
+
+
+@contextmanager
+def counting(label: str) -> Iterator[Count]:
+    """A bar of what is done and how much there is; nothing where there is no terminal."""
+    with watching(label) as (_, (count,)):
+        yield count
+
+
+@contextmanager
+def watching(*labels: str) -> Iterator[tuple[Show, tuple[Count, ...]]]:
+    """The bars of `showing`, and one more for each label; each appears as soon as something is in it."""
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
-        walked = bars.add_task("metres walked", total=None)
-        tried = bars.add_task("recordings navigated", total=None)
+        counts = tuple(_counter(bars, label) for label in labels)
+        walked = bars.add_task("metres walked", total=None, visible=False)
+        tried = bars.add_task("recordings navigated", total=None, visible=False)
         lengths: list[float] = []
+        latest: Done | None = None
 
         def show(now: Done) -> None:
-            if not lengths:
-                lengths.extend(trial.plan.route.length for trial in now.walks)
+            nonlocal latest
+            if latest is not now:  # other trials than before
+                latest = now
+                lengths[:] = [trial.plan.route.length for trial in now.walks]
             bars.update(
                 walked,
                 description="compiling, once" if now.compiling else "metres walked",
                 completed=round(sum(now.metres)),
                 total=round(sum(lengths)),
+                visible=True,
             )
-            bars.update(tried, completed=now.done, total=now.trials)
+            bars.update(tried, completed=now.done, total=now.trials, visible=True)
 
-        yield show
+        yield show, counts
 
 
-@contextmanager
-def counting(label: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar of what is done and how much there is; nothing where there is no terminal."""
-    console = Console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
-        task = bars.add_task(label, total=None, visible=False)
-        yield lambda done, all_: bars.update(task, completed=done, total=all_, visible=True)
+def _counter(bars: Progress, label: str) -> Count:
+    task = bars.add_task(label, total=None, visible=False)
+    return lambda done, all_: bars.update(task, completed=done, total=all_, visible=True)

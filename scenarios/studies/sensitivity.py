@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import os
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,10 +17,12 @@ from footfall.scenarios.execute import Progress
 from footfall.scenarios.judge.gate import floor_of
 from footfall.scenarios.studies.budget import Case
 from footfall.scenarios.studies.check import Check, check_points
-from footfall.scenarios.studies.indices import Screened, Sobol, morris, morris_design, sobol_until
+from footfall.scenarios.studies.indices import Index, Screened, Sobol, morris, morris_design, sobol_until
+from footfall.scenarios.studies.kept import Kept, made_of
 from footfall.scenarios.studies.listening import Heard, Lost, listened
 from footfall.scenarios.studies.points import Evaluated, evaluate_points, over_cases, require_finite
-from footfall.scenarios.studies.sensitivity_file import UNIT, Study
+from footfall.scenarios.studies.sensitivity_file import UNIT, Study, read_study
+from footfall.settings import did_you_mean
 
 Evaluate = Callable[[np.ndarray], np.ndarray]  # shares (p, factors) of the ranges -> scores (p, methods)
 
@@ -29,13 +34,14 @@ class Watch:
     Attributes
     ----------
     workers : processes; one a core when None
-    store : folder of footfalls (`footfall.scenarios.store`)
-    on_trials, on_cases : progress of the full chain, and of the budget's cases
+    store : folder of footfalls (`footfall.scenarios.store`) and of what was evaluated (`studies.kept`)
+    on_points, on_trials, on_cases : progress of points in full, of their trials, and of the budget's cases
     on_check : called with the check of the budget, before it is refused
     """
 
     workers: int | None = None
     store: Path | None = None
+    on_points: Callable[[int, int], None] = field(default=lambda done, all_: None)
     on_trials: Callable[[Progress], None] | None = None
     on_cases: Callable[[int, int], None] | None = None
     on_check: Callable[[Check], None] = field(default=lambda check: None)
@@ -81,6 +87,25 @@ class Found:
     shares: Mapping[str, np.ndarray]
     answers: tuple[Answer, ...]
 
+    def of(self, method: str) -> Answer:
+        """What was found of a method.
+
+        Raises
+        ------
+        InputError
+            It is none of the study's.
+        """
+        found = {one.method: one for one in self.answers}
+        if method not in found:
+            raise InputError(f"method {method!r}: not in the study{did_you_mean(method, found)}")
+        return found[method]
+
+    def total(self, method: str) -> dict[str, Index]:
+        """Address -> Sobol's total index; empty where the study has none."""
+        sobol = self.of(method).sobol
+        names = [factor.address for factor in self.study.factors]
+        return {} if sobol is None else dict(zip(names, sobol.total, strict=True))
+
     def rows(self) -> Iterator[dict[str, Any]]:
         """A row a point and method: design, the values by address, method, score."""
         metric = self.study.file.metric
@@ -91,6 +116,21 @@ class Found:
                 for one in self.answers:
                     score = float(one.scores[design][i])
                     yield {"design": design, **point, **unit, "method": one.method, metric: score}
+
+
+def sensitivity(study: str | os.PathLike[str] | Study, watch: Watch | None = None, **changes: Any) -> Found:
+    """A study that comes with Footfall by name, or of a file: `sensitivity("mine.toml").total("hdr")`.
+
+    Parameters
+    ----------
+    changes : keys of the file with other values, as `fidelity="full"`
+
+    Raises
+    ------
+    InputError
+        As of `read_study` and `perform_study`.
+    """
+    return perform_study(study if isinstance(study, Study) else read_study(os.fspath(study), changes), watch)
 
 
 def perform_study(study: Study, watch: Watch | None = None) -> Found:
@@ -168,13 +208,26 @@ def transformed(study: Study, scores: np.ndarray) -> np.ndarray:
 
 
 def _full(study: Study, watch: Watch) -> Evaluate:
-    """The full chain."""
+    """The full chain; what was evaluated before is found again where there is a store."""
+    setup = study.base.setup()
+    kept = Kept(watch.store, *made_of(setup, study.file.cases.deal(setup), study.file.metric))
+    failures: Counter[str] = Counter()
 
     def evaluate(shares: np.ndarray) -> np.ndarray:
         points, which = study.points(shares)
-        found = _evaluated(study, watch, points, which)
-        scores = np.stack([over_cases(errors, study.file.over) for errors in found.errors], axis=1)
-        require_finite(scores.max(axis=1), shares, study.factors, found.failures)
+        cases = [None] * len(points) if which is None else which.tolist()
+        keys = [json.dumps(pair, sort_keys=True) for pair in zip(points, cases, strict=True)]
+
+        def work(new: list[int]) -> np.ndarray:
+            watch.on_points(new[0], len(points))
+            own = None if which is None else which[new]
+            found = _evaluated(study, watch, [points[i] for i in new], own)
+            failures.update(found.failures)
+            return found.errors.swapaxes(0, 1)
+
+        errors = kept(keys, work).swapaxes(0, 1)
+        scores = np.stack([over_cases(own, study.file.over) for own in errors], axis=1)
+        require_finite(scores.max(axis=1), shares, study.factors, failures)
         return scores
 
     return evaluate

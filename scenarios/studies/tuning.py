@@ -8,6 +8,7 @@ many processes answer.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +17,6 @@ from typing import Any
 import numpy as np
 
 from footfall.errors import InputError
-from footfall.identity import digest_of
 from footfall.late import late
 from footfall.scenarios.execute import Progress
 from footfall.scenarios.judge.gate import Gate
@@ -24,13 +24,12 @@ from footfall.scenarios.judge.verdict import Verdict, decide, weigh
 from footfall.scenarios.studies.budget import Case
 from footfall.scenarios.studies.extra import needed
 from footfall.scenarios.studies.factors import Factor, points_at
+from footfall.scenarios.studies.kept import Kept, made_of
 from footfall.scenarios.studies.listening import listened
 from footfall.scenarios.studies.map import is_compiled, mapped
 from footfall.scenarios.studies.points import evaluate_points, over_cases
-from footfall.scenarios.studies.tuning_file import Tuning
+from footfall.scenarios.studies.tuning_file import Tuning, read_tuning
 from footfall.scenarios.trial import Setup, Trial
-from footfall.sources import STAGES, stage_digest
-from footfall.tables import replacing
 
 qmc = late("scipy.stats.qmc")
 
@@ -76,6 +75,29 @@ class Tuned:
             return f"better on walks and units it has not seen ({change}): take it"
         why = "worse" if self.verdict.verdict == "fail" else "undecided"
         return f"not better on walks and units it has not seen ({change}, {why}): keep the default"
+
+
+def tuned(
+    study: str | os.PathLike[str] | Tuning,
+    *,
+    workers: int | None = None,
+    folder: Path | None = None,
+    **changes: Any,
+) -> Tuned:
+    """Tune by a file or the name of a tuning that comes with Footfall: `tuned("mine.toml").advice`.
+
+    Parameters
+    ----------
+    workers, folder : as of `perform_tuning`
+    changes : keys of the file with other values, as `method="hdr-basic"`
+
+    Raises
+    ------
+    InputError
+        As of `read_tuning` and `perform_tuning`.
+    """
+    asked = study if isinstance(study, Tuning) else read_tuning(os.fspath(study), changes)
+    return perform_tuning(asked, workers=workers, folder=folder)
 
 
 def perform_tuning(
@@ -208,13 +230,18 @@ def _searched(
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     sampler = optuna.samplers.TPESampler(seed=tuning.file.seed, constant_liar=True)
     study = optuna.create_study(sampler=sampler)
-    kept = _Kept(tuning, folder)
+    kept = Kept(folder, *made_of(tuning.base.setup(), tuning.train, tuning.file.metric))
+
+    def tried(batch: Sequence[Point]) -> np.ndarray:
+        keys = [json.dumps(point, sort_keys=True) for point in batch]
+        return kept(keys, lambda new: errors([batch[i] for i in new], tuning.train))
+
     points: list[Point] = [{}]
-    found = [kept.errors([{}], errors)]
+    found = [tried([{}])]
     while len(points) - 1 < count:
         asked = [study.ask() for _ in range(min(BATCH, count - len(points) + 1))]
         batch = [_short({one.address: _suggested(trial, one) for one in tuning.factors}) for trial in asked]
-        made = kept.errors(batch, errors)
+        made = tried(batch)
         for trial, score in zip(asked, over_cases(made, tuning.file.over), strict=True):
             if np.isfinite(score):
                 study.tell(trial, float(score))
@@ -231,40 +258,3 @@ def _suggested(trial: Any, factor: Factor) -> Any:
         which = trial.suggest_categorical(factor.address, list(range(len(factor.values))))
         return factor.values[which]
     return trial.suggest_float(factor.address, factor.low, factor.high, log=factor.log)
-
-
-class _Kept:
-    """Errors of sets that were tried, by what makes them; in a file, where there is a folder."""
-
-    def __init__(self, tuning: Tuning, folder: Path | None) -> None:
-        self._cases = tuning.train
-        setup = tuning.base.setup()
-        made = digest_of(
-            [stage_digest(stage) for stage in STAGES],
-            [_case(trial) for trial in tuning.train],
-            setup.scenario.plan(0),
-            setup.spec,
-            setup.pdr,
-            setup.guided,
-            setup.methods[0].params,
-            setup.methods[0].version,
-            tuning.file.model_dump(mode="json", exclude={"trials", "description", "test", "over"}),
-        )
-        self._file = None if folder is None else folder / f"tried-{made[:24]}.json"
-        self._known: dict[str, list[float | None]] = {}
-        if self._file is not None and self._file.is_file():
-            self._known = json.loads(self._file.read_text(encoding="utf-8"))
-
-    def errors(self, points: Sequence[Point], errors: Errors) -> np.ndarray:
-        """(p, cases) of points, of which only new ones are evaluated."""
-        keys = [json.dumps(point, sort_keys=True) for point in points]
-        new = {key: point for key, point in zip(keys, points, strict=True) if key not in self._known}
-        if new:
-            made = errors(list(new.values()), self._cases)
-            for key, row in zip(new, made.tolist(), strict=True):
-                self._known[key] = [value if np.isfinite(value) else None for value in row]
-            if self._file is not None:
-                with replacing(self._file) as temporary:
-                    temporary.write_text(json.dumps(self._known), encoding="utf-8")
-        rows = [[np.inf if value is None else value for value in self._known[key]] for key in keys]
-        return np.array(rows)

@@ -108,6 +108,17 @@ def test_methods_side_by_side(file, cli, here):
     assert "Total indices" in printed
 
 
+def test_in_python(file):
+    from footfall.studies import sensitivity
+
+    found = sensitivity(file, Watch(workers=1), sobol={"samples": 16, "at_most": 16}, morris=None)
+    total = found.total("hdr")
+    assert list(total) == [G, "hdr.theta_w_deg_s"]
+    assert total[G] == found.answers[0].sobol.total[0]
+    with pytest.raises(InputError, match="did you mean hdr"):
+        found.of("hd")
+
+
 def test_the_unit_as_a_factor(file):
     study = read_study(str(file), {"units_as_factor": True, "morris": None})
     assert study.factors[-1].values == (1000, 1001, 1002)
