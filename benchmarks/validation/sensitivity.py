@@ -80,8 +80,8 @@ def inside(
         widest = max(widest, found.widest)
         for indices, true in zip((found.first, found.total), known, strict=True):
             for index, value in zip(indices, true, strict=True):
-                hits += index.low <= value <= index.high
-                furthest = max(furthest, abs(index.value - value) / max(index.half, 1e-12))
+                hits += int(index.low <= value <= index.high)
+                furthest = max(furthest, float(abs(index.value - value) / max(index.half, 1e-12)))
                 count += 1
     return {"indices": count, "inside": hits, "widest": widest, "furthest": furthest}
 

@@ -63,7 +63,7 @@ def scaled_sheet(base: Any, factor: float) -> dict[str, float]:
 
 def draw(found: dict[str, dict[str, Any]], path: Path) -> None:
     """A panel a scenario: medians, 10 to 90 % of the units, the full chain's medians, both crossings."""
-    figure, axes = new_panels(len(found), 3.4, 2.9, columns=min(2, len(found)), sharey=True)
+    figure, axes = new_panels(len(found), 3.4, 2.7, columns=min(2, len(found)), sharey=True)
     for axis, (scenario, made) in zip(axes, found.items(), strict=True):
         for name, errors in made["errors"].items():
             low, middle, high = np.percentile(errors, [10, 50, 90], axis=1)
@@ -72,20 +72,18 @@ def draw(found: dict[str, dict[str, Any]], path: Path) -> None:
             axis.plot(list(CHECKED), made["full"][name], "o", ms=5, mfc="white", mec=COLOURS[name])
         now = float(np.interp(0.0, np.log(FACTORS), np.median(made["errors"]["hdr"], axis=1)))
         axis.axhline(now, color=COLOURS["hdr"], lw=0.8, ls=":")
-        for key, text in (("as_nimu", "as good as\nthe nIMU with HDR"), ("no_help", "HDR no longer helps")):
+        told = []
+        for key, style, text in (
+            ("as_nimu", "--", "PDR as good as the nIMU with HDR"),
+            ("no_help", ":", "HDR helps from here on"),
+        ):
             if made[key] is not None:
-                axis.axvline(made[key], color="#555555", lw=0.8, ls="--")
-                side = "left" if key == "as_nimu" else "right"
-                axis.annotate(
-                    f"{text}: {made[key]:.2g}",
-                    (made[key], 1.0),
-                    xycoords=("data", "axes fraction"),
-                    xytext=(3 if side == "left" else -3, -2),
-                    textcoords="offset points",
-                    va="top",
-                    ha=side,
-                    fontsize=7,
-                )
+                axis.axvline(made[key], color="#444444", lw=1.0, ls=style)
+                told.append(f"{'- -' if style == '--' else '· ·'}  {text}: {made[key]:.2g}")
+        axis.text(
+            0.02, 0.98, "\n".join(told), transform=axis.transAxes, va="top", fontsize=7,
+            bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
+        )  # fmt: skip
         entitle(axis, scenario)
         axis.set_xticks([0.01, 0.03, 0.1, 0.3, 1, 3], ["0.01", "0.03", "0.1", "0.3", "1", "3"])
         axis.set_yticks([0.1, 0.3, 1, 3, 10, 30, 100], ["0.1", "0.3", "1", "3", "10", "30", "100"])
@@ -93,7 +91,7 @@ def draw(found: dict[str, dict[str, Any]], path: Path) -> None:
     axes[0].legend(frameon=False, fontsize=8, loc="lower right")
     label_edges(axes, "gyro errors, in those of the nIMU", "mean heading error (deg)")
     figure.suptitle(
-        "How good must a sensor be to do without HDR?  Median and 10 to 90 % of the units; dots: in full",
+        "How good must a sensor be to do without HDR?\nMedian and 10 to 90 % of the units; dots: in full",
         x=0.01,
         ha="left",
         fontsize=10,
@@ -113,7 +111,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     worn = Worn(walks=chosen.walks, units=chosen.units)
     found: dict[str, dict[str, Any]] = {}
     title = "Factor on all of the nIMU's gyro errors"
-    columns = ["path", "pdr, 1", "hdr, 1", "pdr as the nIMU with HDR", "HDR no longer helps", "full, off"]
+    columns = ["path", "pdr, 1", "hdr, 1", "pdr as the nIMU with HDR", "HDR helps from", "off"]
     sheet = Sheet("without-hdr", title, columns)
     for scenario in chosen.scenarios:
         base = documents(scenario, imu="nimu", methods=list(METHODS))

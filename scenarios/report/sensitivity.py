@@ -140,13 +140,16 @@ def _convergence(factors: Sequence[Factor], steps: Sequence[Sobol]) -> Renderabl
 def _side_by_side(found: Found) -> RenderableType:
     """The methods beside each other: total indices, or mu* where there are none."""
     table = new_table("parameter", *(one.method for one in found.answers))
+    few = len(found.answers) <= 3  # with whose intervals a line is not too long
     for i in ranked(found):
         cells = []
         for one in found.answers:
             if one.sobol is not None:
-                cells.append(f"{one.sobol.total[i].shown:.2f} +-{one.sobol.total[i].half:.2f}")
-            elif one.morris is not None:
-                cells.append(f"{one.morris[i].mu_star:.2f} +-{one.morris[i].half:.2f}")
+                value, half = one.sobol.total[i].shown, one.sobol.total[i].half
+            else:
+                assert one.morris is not None
+                value, half = one.morris[i].mu_star, one.morris[i].half
+            cells.append(f"{value:.2f} +-{half:.2f}" if few else f"{value:.2f}")
         table.add_row(found.study.factors[i].name, *cells)
     return titled("Total indices" if found.answers[0].sobol else f"mu*{_in(found.study)}", table)
 
@@ -248,7 +251,8 @@ def write_sensitivity(found: Found, document: dict[str, Any], folder: Path) -> N
     with replacing(folder / "points.parquet") as temporary:
         pq.write_table(pa.table(columns), temporary, compression="zstd")
     draw_indices(found, folder / "indices.png")
-    draw_effects(found, folder / "effects.png")
+    if "sobol" in found.shares:  # Morris' points are few, and what is seen over one factor is the others
+        draw_effects(found, folder / "effects.png")
 
 
 def _column(values: list[Any]) -> Any:

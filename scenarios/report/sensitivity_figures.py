@@ -32,41 +32,46 @@ FIRST, TOTAL = "#1f6fb4", "#a9cbe6"
 _WHISKER: Any = {"color": "#222222", "elinewidth": 1.0, "capsize": 2.5, "fmt": "none"}
 _COLOURS = ("#c1440e", "#1f6fb4", "#6a9f3a", *MORE)
 _BINS = 12
+_COLUMNS = 4  # methods side by side, at most
 _WIDE = 26  # characters of a factor's name before it is broken
 
 
 def draw_indices(found: Found, path: Path) -> None:
     """Bars of the indices, the greatest at the top, and how they converge; of Morris alone mu* and sigma.
 
-    One method has both side by side; several have a column each, with the factors in one order.
+    One method has both side by side; of several each has a panel, with the factors in one order.
     """
     methods, count = len(found.answers), len(found.study.factors)
-    ways: Any = ()
-    tall = 1.0 + 0.42 * count
     sobol = found.answers[0].sobol is not None
+    tall, columns = 1.0 + 0.42 * count, min(methods, _COLUMNS)
+    rows = -(-methods // columns)
     if methods == 1 and sobol:
         figure, grid = new_figure(1, 2, 9.0, tall + 0.6, width_ratios=[1.25, 1.0])
-        bars, ways = grid[0, :1], grid[0, 1:]
+        bars, ways = [grid[0, 0]], [grid[0, 1]]
     else:
-        heights = [tall, 2.4] if sobol else [tall]
-        width = 2.0 + 2.9 * methods if methods > 1 else 6.4
-        figure, grid = new_figure(len(heights), methods, width, sum(heights) + 0.6, height_ratios=heights)
-        bars, ways = grid[0], (grid[1] if sobol else ())
+        heights = [tall] * rows + [2.4] * rows * sobol
+        width = 6.4 if methods == 1 else 2.0 + 2.7 * columns
+        figure, grid = new_figure(len(heights), columns, width, sum(heights) + 0.6, height_ratios=heights)
+        for axis in [*grid[:rows].flat][methods:] + [*grid[rows:].flat][methods:]:
+            figure.delaxes(axis)
+        bars, ways = [*grid[:rows].flat][:methods], [*grid[rows:].flat][:methods]
     order = ranked(found)
+    names = [_wrapped(found.study.factors[i]) for i in order]
     for place, (axis, one) in enumerate(zip(bars, found.answers, strict=True)):
         draw = _sobol_bars if sobol else _morris_bars
         draw(axis, one, order, found)
-        axis.set_yticks(
-            np.arange(count)[::-1], [_wrapped(found.study.factors[i]) if place == 0 else "" for i in order]
-        )
+        axis.set_yticks(np.arange(count)[::-1], names if place % columns == 0 else [""] * count)
         axis.grid(axis="y", visible=False)
         if methods > 1:
             entitle(axis, label_of(one.method))
+    ends = [axis.get_xlim() for axis in bars]
+    for axis in bars:  # so that methods can be compared
+        axis.set_xlim(min(low for low, _ in ends), max(high for _, high in ends))
     bars[0].legend(loc="lower right", frameon=False, fontsize=8)
-    for place, (axis, one) in enumerate(zip(ways, found.answers, strict=bool(sobol))):
+    for place, (axis, one) in enumerate(zip(ways, found.answers, strict=bool(ways))):
         _converge(axis, one, order, found)
-        axis.set_ylabel("total index" if place == 0 else "")
-    if len(ways):
+        axis.set_ylabel("total index" if place % columns == 0 else "")
+    if ways:
         handles, labels = ways[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower right", ncols=3, frameon=False, fontsize=7)
     figure.suptitle(_title(found), x=0.01, ha="left", fontsize=10)
@@ -114,16 +119,15 @@ def _converge(axis: Axes, one: Answer, order: list[int], found: Found) -> None:
 
 
 def draw_effects(found: Found, path: Path) -> None:
-    """The score over each factor: the median over all the others; of one method with 10 to 90 % of them."""
+    """The score over each factor, of Sobol's points: median over all others; of one method 10 to 90 %."""
     factors = found.study.factors
     figure, axes = new_panels(len(factors), 2.6, 2.1, sharey=True)
-    design = list(found.shares)[-1]
     single = len(found.answers) == 1
     colours = colours_of([one.method for one in found.answers])
     for axis, i in zip(axes, ranked(found), strict=True):
         for one in found.answers:
             colour = FIRST if single else colours[one.method]
-            share, scores = found.shares[design][:, i], one.scores[design]
+            share, scores = found.shares["sobol"][:, i], one.scores["sobol"]
             _effect(axis, factors[i], share, scores, colour, band=single, label=label_of(one.method))
             axis.axhline(one.nominal, color=colour, lw=0.8, ls=":")
         entitle(axis, _wrapped(factors[i], 34, unit=True))
@@ -131,7 +135,8 @@ def draw_effects(found: Found, path: Path) -> None:
     plain_log(axes[0].yaxis)
     label_edges(axes, "", f"error ({unit_of(found.study.file.metric)})")
     if not single:
-        axes[0].legend(frameon=False, fontsize=7)
+        handles, labels = axes[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower right", ncols=6, frameon=False, fontsize=8)
     what = "Median and 10th to 90th percentile" if single else "Median"
     title = f"{_title(found)}\n{what} over all other parameters; dotted: with none of them changed"
     figure.suptitle(title, x=0.01, ha="left", fontsize=9)

@@ -143,18 +143,27 @@ def perform_study(study: Study, watch: Watch | None = None) -> Found:
         refuse; or SALib is not installed.
     """
     watch = watch or Watch()
-    full = _full(study, watch)
     if study.file.fidelity == "full":
-        return _found(study, full, _nominal(study, watch), ())
-    known, budget = _budget(study, watch)
+        return _found(study, _full(study, watch), _nominal(study, watch), ())
+    heard = _listened(study, watch)
+    checks = _checked(study.without_unit(), heard, watch)
+    setup, over = study.base.setup(), study.file.over
+    known = [Heard(heard, setup.spec, method, (), study.file.metric) for method in setup.methods]
+    nominal = np.array([over_cases(model(np.empty((1, 0))), over)[0] for model in known])
+    return _found(study, _budget(study, heard), nominal, checks)
+
+
+def _checked(study: Study, heard: Sequence[Case | Lost], watch: Watch) -> tuple[Check, ...]:
+    """The budget beside the full chain, over all units at each point."""
     shares = check_points(len(study.factors), study.file.seed)
+    full, budget = _full(study, watch)(shares), _budget(study, heard)(shares)
     names = [method.name for method in study.base.methods]
-    checks = tuple(map(Check, names, [shares] * len(names), full(shares).T, budget(shares).T))
+    checks = tuple(map(Check, names, [shares] * len(names), full.T, budget.T))
     for check in checks:
         watch.on_check(check)
     for check in checks:
         check.require()
-    return _found(study, budget, known, checks)
+    return checks
 
 
 def _found(study: Study, evaluate: Evaluate, nominal: np.ndarray, checks: Sequence[Check]) -> Found:
@@ -253,18 +262,26 @@ def _evaluated(
     )
 
 
-def _budget(study: Study, watch: Watch) -> tuple[np.ndarray, Evaluate]:
-    """Scores (m,) at the documents' own values, and the surrogate."""
+def _listened(study: Study, watch: Watch) -> list[Case | Lost]:
+    """The cases, heard once."""
     listed = next((factor for factor in study.varied if factor.values is not None), None)
     if listed is not None:
         raise InputError('the budget takes ranges, no lists: use fidelity = "full"', listed.address)
-    setup, over = study.base.setup(), study.file.over
     _models(study, ())  # refused before anything is walked
-    heard = listened(study.file.cases.deal(setup), workers=watch.workers, on_progress=watch.on_cases)
-    reasons = {one[1]: 1 for one in heard if not isinstance(one, Case)}
-    if len(reasons) and not any(isinstance(one, Case) for one in heard):
-        raise InputError(f"no case came to its end: {next(iter(reasons))}")
-    models = _models(study, heard)
+    trials = study.file.cases.deal(study.base.setup())
+    heard = listened(trials, workers=watch.workers, on_progress=watch.on_cases)
+    if not any(isinstance(one, Case) for one in heard):
+        raise InputError(f"no case came to its end: {next(iter(_reasons(heard)))}")
+    return heard
+
+
+def _reasons(heard: Sequence[Case | Lost]) -> Counter[str]:
+    return Counter(one[1] for one in heard if not isinstance(one, Case))
+
+
+def _budget(study: Study, heard: Sequence[Case | Lost]) -> Evaluate:
+    """The surrogate."""
+    models, reasons, over = _models(study, heard), _reasons(heard), study.file.over
 
     def evaluate(shares: np.ndarray) -> np.ndarray:
         values = [factor.at(shares[:, i]) for i, factor in enumerate(study.varied)]
@@ -280,9 +297,7 @@ def _budget(study: Study, watch: Watch) -> tuple[np.ndarray, Evaluate]:
         require_finite(scores.max(axis=1), shares, study.factors, reasons)
         return scores
 
-    known = [Heard(heard, setup.spec, one, (), study.file.metric) for one in setup.methods]
-    nominal = np.array([over_cases(model(np.empty((1, 0))), over)[0] for model in known])
-    return nominal, evaluate
+    return evaluate
 
 
 def _models(study: Study, heard: Sequence[Case | Lost]) -> list[tuple[list[str], Heard]]:

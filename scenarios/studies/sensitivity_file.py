@@ -93,6 +93,11 @@ class Study:
         which = np.minimum((shares[:, -1] * units).astype(int), units - 1)
         return points_at(self.factors[:-1], shares), which
 
+    def without_unit(self) -> Study:
+        """The same over all units at each point, where the unit is a factor."""
+        file = self.file.model_copy(update={"units_as_factor": False})
+        return replace(self, file=file, factors=self.varied)
+
     @property
     def varied(self) -> tuple[Factor, ...]:
         """The factors that have an address: all but the unit."""

@@ -22,6 +22,7 @@ def test_what_studies_cost(tmp_path):
 
 def test_known_indices_are_counted():
     found = validation.inside(validation.g, validation.g_known(), seeds=2)
+    assert json.loads(json.dumps(found)) == found
     assert found["indices"] == found["inside"] == 16
     assert 0 < found["furthest"] < 1
     wrong = tuple(known + 0.5 for known in validation.g_known())

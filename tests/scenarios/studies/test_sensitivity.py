@@ -9,6 +9,7 @@ import pytest
 pytest.importorskip("SALib")
 
 from footfall.errors import InputError
+from footfall.scenarios.report.sensitivity import sensitivity_document, write_sensitivity
 from footfall.scenarios.studies import sensitivity as studied
 from footfall.scenarios.studies.check import Check
 from footfall.scenarios.studies.sensitivity import Watch, perform_study
@@ -102,6 +103,9 @@ def test_methods_side_by_side(file, cli, here):
     assert full.answers[1].nominal == pytest.approx(hdr.nominal, rel=1e-6)
     assert full.answers[0].morris[1].mu_star == 0
     assert len(list(full.rows())) == 12
+    write_sensitivity(full, sensitivity_document(full, "x"), here)
+    assert (here / "indices.png").is_file()
+    assert not (here / "effects.png").exists()  # six points show nothing
     changed(file, '["hdr"]', '["pdr", "hdr"]')
     code, printed, told = cli("sensitivity costs.toml --workers 1")
     assert code == 0, told
@@ -123,13 +127,14 @@ def test_the_unit_as_a_factor(file):
     study = read_study(str(file), {"units_as_factor": True, "morris": None})
     assert study.factors[-1].values == (1000, 1001, 1002)
     found = perform_study(study, Watch(workers=1))
+    assert found.answers[0].check.shares.shape == (8, 2)  # over all units
     rows = list(found.rows())
     assert {row["unit"] for row in rows} == {1000, 1001, 1002}
     assert len(found.answers[0].sobol.total) == 3
 
 
 def test_a_budget_that_is_too_far_off_is_refused_after_it_was_shown(file, monkeypatch):
-    wrong = lambda study, watch: (np.ones(1), lambda shares: np.full((len(shares), 1), 1e3))  # noqa: E731
+    wrong = lambda study, heard: lambda shares: np.full((len(shares), 1), 1e3)  # noqa: E731
     monkeypatch.setattr(studied, "_budget", wrong)
     seen = []
     with pytest.raises(
