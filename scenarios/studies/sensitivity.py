@@ -123,7 +123,7 @@ def sensitivity(study: str | os.PathLike[str] | Study, watch: Watch | None = Non
 
     Parameters
     ----------
-    changes : keys of the file with other values, as `fidelity="full"`
+    **changes : keys of the file with other values, as `fidelity="full"`
 
     Raises
     ------

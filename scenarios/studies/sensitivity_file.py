@@ -114,7 +114,7 @@ def read_study(name_or_path: str, changes: Mapping[str, Any] | None = None) -> S
 
     Parameters
     ----------
-    changes : keys of the file with other values
+    **changes : keys of the file with other values
 
     Raises
     ------

@@ -89,7 +89,7 @@ def tuned(
     Parameters
     ----------
     workers, folder : as of `perform_tuning`
-    changes : keys of the file with other values, as `method="hdr-basic"`
+    **changes : keys of the file with other values, as `method="hdr-basic"`
 
     Raises
     ------

@@ -74,7 +74,7 @@ def read_tuning(name_or_path: str, changes: Mapping[str, Any] | None = None) -> 
 
     Parameters
     ----------
-    changes : keys of the file with other values; those of a table are changed one by one
+    **changes : keys of the file with other values; those of a table are changed one by one
 
     Raises
     ------
