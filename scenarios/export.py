@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from footfall.errors import InputError
 from footfall.pdr.track import Track, read_track
@@ -36,6 +35,9 @@ def write_tum(poses: Track | Walk, path: str | os.PathLike[str]) -> None:
 
 def write_kitti(poses: Track | Walk, path: str | os.PathLike[str]) -> None:
     """Write poses as KITTI odometry text: a line a pose, the 3 x 4 matrix (R | p) row by row; no times."""
+    # Late: no other format needs it.
+    from scipy.spatial.transform import Rotation
+
     tum = tum_poses(poses)
     pose = np.concatenate([Rotation.from_quat(tum[:, 4:]).as_matrix(), tum[:, 1:4, None]], axis=2)
     with replacing(path) as temporary:
@@ -54,6 +56,12 @@ def write_csv(poses: Track | Walk, path: str | os.PathLike[str]) -> None:
 FORMATS = {"tum": write_tum, "kitti": write_kitti, "csv": write_csv}
 
 
+def require_format(name: str) -> None:
+    """Raise InputError where no format of `FORMATS` is called so."""
+    if name not in FORMATS:
+        raise InputError(f"format {name!r} is unknown{did_you_mean(name, FORMATS)}")
+
+
 def export(source: str | os.PathLike[str], target: str | os.PathLike[str], format: str = "tum") -> int:
     """Write the file of a track or a walk for other tools; returns the number of poses.
 
@@ -66,8 +74,7 @@ def export(source: str | os.PathLike[str], target: str | os.PathLike[str], forma
     InputError
         No such format; the file is neither, or cannot be written.
     """
-    if format not in FORMATS:
-        raise InputError(f"format {format!r} is unknown{did_you_mean(format, FORMATS)}")
+    require_format(format)
     columns, _ = read_table(source)
     poses = read_walk(source) if is_truth(columns) else read_track(source)
     FORMATS[format](poses, target)

@@ -54,7 +54,8 @@ def read_footfalls(file: Path) -> Reckoned | None:
     try:
         with np.load(file, allow_pickle=False) as kept:
             columns = {name: kept[name] for name in _FIELDS}
-            strides = Strides(**{name: kept[f"stride_{name}"] for name in _STRIDES})
+            told = {name: kept[f"stride_{name}"] for name in _STRIDES if f"stride_{name}" in kept}
+            strides = Strides(**told) if told else None
             found = Reckoned(Footfalls(**columns, strides=strides), str(kept["recording_sha"]))
         with suppress(OSError):  # when it was last used
             os.utime(file)
@@ -66,7 +67,8 @@ def read_footfalls(file: Path) -> Reckoned | None:
 def write_footfalls(file: Path, found: Reckoned) -> None:
     """Keep footfalls. A full disk costs only that they are reckoned again."""
     columns = {name: getattr(found.footfalls, name) for name in _FIELDS}
-    columns |= {f"stride_{name}": getattr(found.footfalls.strides, name) for name in _STRIDES}
+    strides = found.footfalls.strides
+    columns |= {f"stride_{name}": getattr(strides, name) for name in _STRIDES if strides is not None}
     with suppress(OSError, InputError):
         file.parent.mkdir(parents=True, exist_ok=True)
         with replacing(file) as temporary, temporary.open("wb") as out:

@@ -26,7 +26,9 @@ def export(
     A track has headings alone: its poses are level. Compare positions, not rotations, with those of a walk.
     """
     from footfall.scenarios.export import export as write
+    from footfall.scenarios.export import require_format
 
+    require_format(format)
     endings = (".csv",) if format == "csv" else (f".{format}", ".txt")
     require_output(output, endings, file)
     say(f"{write(file, output, format)} poses: {output}")

@@ -237,7 +237,8 @@ def test_the_files_are_what_the_commands_make(cli, here):
     (ours, told), (alone, again) = read_table("out/walk-1.pdr.parquet"), read_table("pdr.parquet")
     for name, values in ours.items():
         np.testing.assert_array_equal(values, alone[name])
-    assert again == told | {"read": again["read"]}
+    # What was read is told of a file, and what is plausible of its track.
+    assert again == told | {name: again[name] for name in ("read", "plausibility")}
     drift, _ = read_table("out/walk-1.drift.parquet")
     assert {"t", "interval", "temperature", "white", "total"} <= set(drift)
 

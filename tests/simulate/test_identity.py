@@ -124,6 +124,9 @@ def recording(short_walk):
     return record(short_walk, unit, seed=9, without=["white"])
 
 
+WITHOUT_FILTER = ("pdr", "hdr", "hdr-basic", "hde-2010", "hypotheses", "hypotheses-smooth")
+
+
 def test_the_way_from_walk_to_track_is_told(short_walk, short_plan, recording, tmp_path):
     identity = walk_identity(short_plan, stock_policy())
     write_walk(short_walk, tmp_path / "walk.parquet")
@@ -144,7 +147,7 @@ def test_the_way_from_walk_to_track_is_told(short_walk, short_plan, recording, t
         assert meta["pdr"]["detector"]["kind"] == type(params.detector).__name__
         assert len(meta["pdr"]["detector"]) > 1
         assert meta["start"]["heading_rad"] == start_pose(walk).heading
-        assert "filter" in meta or name in ("pdr", "hdr", "hdr-basic", "hde-2010")
+        assert "filter" in meta or name in WITHOUT_FILTER
         assert "params" in meta or name in ("pdr", "iez", "iez-paper")
 
 
