@@ -1,6 +1,7 @@
 """Compiled: what the filter is shown of each footfall. Explained in docs/hypotheses.md.
 
-The course is unwrapped beside the heading, from which it may differ by any angle: that of the mount.
+The course is told from the heading at the start on. It is unwrapped beside the heading, from which it may
+differ by any angle: that of the mount.
 Of the 27 loads only the few directions are shown in which they leave rest on this walk, learned on the way.
 """
 
@@ -24,8 +25,11 @@ JUMP = LOAD + DIRECTIONS  # angle that it made before it was known
 SIGHT = JUMP + DIRECTIONS
 
 # Of the memory: sums of the angle between course and heading; strides counted; directions known
-COSINE, SINE, STRIDES, KNOWN, LAST_X, LAST_Y, LAST_HEADING, WARM_START, SEEN = range(9)
-MEMORIES = 9
+COSINE, SINE, STRIDES, KNOWN, LAST_X, LAST_Y, LAST_HEADING, WARM_START, SEEN, FIRST_HEADING = range(10)
+MEMORIES = 10
+# Hypotheses are dropped by their weights, which hands on every bit: courses are rounded to a nanoradian, so
+# that the way in which a walk sets out, and another machine's last bits, change nothing.
+NANO = 1e9
 
 
 @kernel()
@@ -39,19 +43,21 @@ def sight(given, loads, numbers, mean, turned, basis, load_sd, shortest, row):  
     if numbers[SEEN] == 0.0:
         numbers[SEEN], numbers[WARM_START] = 1.0, warm
         numbers[LAST_X], numbers[LAST_Y], numbers[LAST_HEADING] = x, y, heading
+        numbers[FIRST_HEADING] = heading
         return
     dx, dy = x - numbers[LAST_X], y - numbers[LAST_Y]
     middle = 0.5 * (heading + numbers[LAST_HEADING])
     numbers[LAST_X], numbers[LAST_Y], numbers[LAST_HEADING] = x, y, heading
-    distance = math.sqrt(dx * dx + dy * dy)
+    distance = np.rint(math.sqrt(dx * dx + dy * dy) * NANO) / NANO
     active = max(interval - rest_s, 1e-3)  # s, less what a rest tells of the drift
     row[INTERVAL], row[ACTIVE], row[MOVING], row[DISTANCE] = interval, active, moving, distance
     if distance >= shortest:
         beside = math.atan2(dy, dx) - middle
+        beside -= 2.0 * math.pi * math.floor(beside / (2.0 * math.pi) + 0.5)
         usual = math.atan2(numbers[SINE], numbers[COSINE]) if numbers[STRIDES] > 0.0 else beside
         off = beside - usual
         off -= 2.0 * math.pi * math.floor(off / (2.0 * math.pi) + 0.5)
-        row[COURSE] = middle + usual + off
+        row[COURSE] = np.rint((middle - numbers[FIRST_HEADING] + usual + off) * NANO) / NANO
         numbers[COSINE] += math.cos(beside)
         numbers[SINE] += math.sin(beside)
     told = not math.isnan(warm - numbers[WARM_START])
