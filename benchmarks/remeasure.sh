@@ -39,5 +39,7 @@ measure truth python -m benchmarks.validation.imu_truth
 measure speed python -m benchmarks.speed.walker
 measure robustness python -m benchmarks.validation.robustness --seeds 20
 measure pushes python -m benchmarks.validation.robustness straight --metres 400 --push 10 --seeds 4
+measure studies python -m benchmarks.studies.pages --docs docs --out "$out/studies"
+measure hypotheses python -m benchmarks.validation.hypotheses --page docs/hypotheses.md
 measure tutorial python docs/examples/spare_torque.py --seed 1 --out "$out/residual.npz" --page docs/tutorial_environment.md
 measure render footfall render straight -o docs/images/walker.png

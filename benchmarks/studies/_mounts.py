@@ -12,11 +12,12 @@ from footfall.scenarios.report.style import COLOURS, entitle, head, label_edges,
 
 MOUNT, COLD = "scenario.sensor.mount", "scenario.temperature[*].outdoors_degC"
 _SHEETS = ("consumer", "nimu")
+_PLACES = ("instep", "instep-left", "medial", "heel")  # the first is what the others are held against
 
 
 def sheets(results: Results) -> list[Sheet]:
-    """By place: an IMU without error, then three sheets in two temperatures."""
-    mounts, shapes = results.values(MOUNT), results.shapes
+    """By place: an IMU without error, then two sheets in two temperatures."""
+    mounts, shapes = _places(results), results.shapes
     alone = Sheet("alone", "IMU without error: average heading error and distance error, medians", ["mount"])
     for shape in shapes:
         alone.headings += [f"{shape}: pdr (deg)", "hdr (deg)", "distance (%)"]
@@ -49,6 +50,10 @@ def sheets(results: Results) -> list[Sheet]:
     return [*found, _against(results, mounts, shapes)]
 
 
+def _places(results: Results) -> list[str]:
+    return sorted(results.values(MOUNT), key=_PLACES.index)
+
+
 def _against(results: Results, mounts: list[str], shapes: list[str]) -> Sheet:
     """The other places against the instep, unit by unit on the same steps."""
     heads = ["shape", "outdoors (degC)", "sheet", "method", *mounts[1:]]
@@ -76,7 +81,7 @@ def _by_unit(rows: Results) -> dict[tuple[int, int], float]:
 
 def draw(results: Results, path: Path) -> None:
     """Median and 90th percentile by place, sheet and shape; two temperatures."""
-    mounts, shapes, colds = results.values(MOUNT), results.shapes, sorted(results.values(COLD))
+    mounts, shapes, colds = _places(results), results.shapes, sorted(results.values(COLD))
     image, grid = new_figure(len(shapes), len(_SHEETS), 7.2, 5.2, sharey="col", sharex=True)
     for line, shape in zip(grid, shapes, strict=True):
         for axis, imu in zip(line, _SHEETS, strict=True):
@@ -87,7 +92,7 @@ def draw(results: Results, path: Path) -> None:
                     low, high = np.transpose([quantiles(rows.where({MOUNT: one}).score()) for one in mounts])
                     fill = COLOURS[method] if c == 0 else "none"
                     axis.vlines(place, low, high, color=COLOURS[method], alpha=0.5, lw=1.5)
-                    label = f"{'uncorrected' if method == 'pdr' else 'HDR'}, outdoors {cold:g} degC"
+                    label = f"{'uncorrected' if method == 'pdr' else 'HDR'}, {cold:g} degC"
                     axis.plot(place, low, "o", ms=4.5, mfc=fill, mec=COLOURS[method], ls="none", label=label)
             axis.set(yscale="log")
             axis.set_xticks(range(len(mounts)), mounts, fontsize=7)
