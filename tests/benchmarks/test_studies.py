@@ -154,10 +154,10 @@ def test_mounts_are_compared_unit_by_unit(results):
         return 10.0 * (1 + unit) * worse[values[_mounts.MOUNT]] * (1 if method == "pdr" else 0.1)
 
     alone, median, _, _, against = _mounts.sheets(results("mounts", error))
-    assert alone.rows[1][:4] == ["`medial`", "40.00", "4.00", "+0.50"]
-    told = ["20.0 / 2.0 (0)", "40.0 / 4.0 (0)", "15.0 / 1.5 (0)", "20.0 / 2.0 (0)"]
+    assert alone.rows[2][:4] == ["`medial`", "40.00", "4.00", "+0.50"]
+    told = ["20.0 / 2.0 (0)", "20.0 / 2.0 (0)", "40.0 / 4.0 (0)", "15.0 / 1.5 (0)"]
     assert median.rows[0] == ["straight", "20", "`consumer`", *told]
-    assert against.rows[0] == ["straight", "20", "`consumer`", "pdr", "2.00 (100)", "0.75 (33)", "1.00 (0)"]
+    assert against.rows[0] == ["straight", "20", "`consumer`", "pdr", "1.00 (0)", "2.00 (100)", "0.75 (33)"]
 
 
 def test_paces_are_told_by_theta_w(results):
