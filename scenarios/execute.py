@@ -285,6 +285,27 @@ def _one_thread_each() -> Iterator[None]:
 
 
 @contextmanager
+def _interrupt_held() -> Iterator[None]:
+    """Ctrl-C is answered at the end: a process that is half started would tell of the pipe that broke.
+
+    It is held back by a mask, which what is started here inherits, and by a handler: the mask is this
+    thread's alone, and the signal goes to any thread of the process.
+    """
+    main = threading.current_thread() is threading.main_thread()
+    held: list[int] = []
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    before = signal.signal(signal.SIGINT, lambda number, frame: held.append(number)) if main else None
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        if before is not None:
+            signal.signal(signal.SIGINT, before)
+        if held:
+            signal.raise_signal(signal.SIGINT)
+
+
+@contextmanager
 def worker_pool(workers: int, shared: int = 0) -> Iterator[tuple[ProcessPoolExecutor, Any]]:
     """A pool of processes that end with this one, and at once where something breaks.
 
@@ -308,16 +329,11 @@ def worker_pool(workers: int, shared: int = 0) -> Iterator[tuple[ProcessPoolExec
     others = set(multiprocessing.active_children())
     with ProcessPoolExecutor(workers, context, _start_worker, (numbers,)) as pool:
         try:
-            # Ctrl-C is the parent's to answer: workers inherit that it is held back while they are started.
-            mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-            try:
-                # A spawning pool starts a worker with each job until all are there.
-                with _one_thread_each():
-                    for started in [pool.submit(os.getpid) for _ in range(workers)]:
-                        started.result()
+            # A spawning pool starts a worker with each job until all are there.
+            with _interrupt_held(), _one_thread_each():
+                for started in [pool.submit(os.getpid) for _ in range(workers)]:
+                    started.result()
                 all_there = True
-            finally:
-                signal.pthread_sigmask(signal.SIG_SETMASK, mask)
             yield pool, numbers
         except BrokenProcessPool as error:
             if all_there:

@@ -58,7 +58,10 @@ class Browser:
         self.colours(dark)
         self.tell("Emulation.setScriptExecutionDisabled", value=not script)
         self.driver.get_log("browser"), self.driver.get_log("performance")
+        # A page that is opened once more may still be the old one for a moment, and forget what it is told.
+        self.js("window.footfallWasOpen = true")
         self.driver.get(page.as_uri())
+        self.wait("!window.footfallWasOpen && document.readyState === 'complete'")
 
     def colours(self, dark):
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}

@@ -129,7 +129,7 @@ def test_a_table_is_sorted_by_its_heads(desk):
 
 def test_keys_step_along_a_track(browser, page, desk):
     browser.open(page)
-    desk.js("document.getElementById('map').focus()")
+    desk.wait("(document.getElementById('map').focus(), document.activeElement.id === 'map')")
     press = (
         "document.getElementById('map').dispatchEvent("
         "new KeyboardEvent('keydown', {{ key: '{}', bubbles: true, cancelable: true }}))"
