@@ -18,6 +18,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 from uuid import uuid4
+from warnings import catch_warnings, filterwarnings
 
 from footfall.errors import InputError
 from footfall.scenarios.studies.extra import needed
@@ -192,6 +193,7 @@ class _Work(Generic[P, R]):
         for piece in pieces:
             self._left[piece.walk] += 1
         self._walks: dict[str, tuple[Any, str]] = {}  # future and hash, of those that are there
+        self._known: dict[str, str] = {}  # hashes of walks that were sent, which need not come back
         self._running: dict[Any, Job[Piece[P]]] = {}
         self._ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._suspects: deque[Job[Piece[P]]] = deque()  # in the making when too many workers ended
@@ -245,7 +247,11 @@ class _Work(Generic[P, R]):
         ours = (about(), os.getcwd(), content)
         if job.walks:
             kept = kept_walk(craft.trial(piece.given).plan)
-            return self._client.submit(walk_job, *ours, kept, **keys)
+            if kept is not None:
+                self._known[piece.walk] = kept.sha
+            with catch_warnings():  # a walk goes with its task, so that Dask can send it again
+                filterwarnings("ignore", "Sending large graph")
+                return self._client.submit(walk_job, *ours, kept, **keys)
         return self._client.submit(do_job, *ours, *self._walk(piece), **keys)
 
     def _walk(self, piece: Piece[P]) -> tuple[Any, str]:
@@ -266,6 +272,9 @@ class _Work(Generic[P, R]):
 
     def _taken(self, future: Any) -> Iterator[tuple[int, R]]:
         job = self._running.pop(future)
+        if job.walks and job.task.walk in self._known and future.status == "finished":
+            self._walked(job.task.walk, future, self._known[job.task.walk])
+            return
         try:
             result = future.result(timeout=self._patience_s)
         except InputError:
@@ -291,11 +300,14 @@ class _Work(Generic[P, R]):
             yield from self._result(piece, result)
         elif isinstance(result, Walk):
             keep_walk(piece.walk, result)
-            self._walks[piece.walk] = future, result.sha
-            self._queue.walked(piece.walk)
-            self._tick({piece.walk: float("inf")}, False)
+            self._walked(piece.walk, future, result.sha)
         else:
             yield from self._fell(piece, result, "walk")
+
+    def _walked(self, key: str, future: Any, sha: str) -> None:
+        self._walks[key] = future, sha
+        self._queue.walked(key)
+        self._tick({key: float("inf")}, False)
 
     def _result(self, piece: Piece[P], result: R) -> Iterator[tuple[int, R]]:
         self._left[piece.walk] -= 1
