@@ -30,6 +30,7 @@ from footfall.cli.render import render
 from footfall.cli.report import report
 from footfall.cli.run import run
 from footfall.cli.sample import sample
+from footfall.cli.scenario import scenario
 from footfall.cli.score import score
 from footfall.cli.sensitivity import sensitivity
 from footfall.cli.sweep import sweep
@@ -88,6 +89,7 @@ COMMANDS = (
 )
 for command in COMMANDS:
     app.command(command.__name__.rstrip("_"))(command)
+app.add_typer(scenario, name="scenario")
 app.add_typer(cache, name="cache")
 
 

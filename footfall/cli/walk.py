@@ -66,7 +66,7 @@ def walk(
     elif not view:
         raise InputError("Missing option '--output' / '-o' (see `footfall walk --help`)")
     require_areas(values := parsed(settings or ()), ("scenario",), "walk")
-    plan = with_values(documents(scenario), values).setup().scenario.plan(number - 1)
+    plan = with_values(documents(scenario), values).setup().scenario.plan(number - 1, seed)
     if mount is not None:
         if mount not in MOUNTS:
             raise InputError(f"--mount {mount!r} is unknown{did_you_mean(mount, MOUNTS)}")
@@ -74,8 +74,6 @@ def walk(
     if rate is not None:
         divisor(PHYSICS_STEP, rate)
         plan = replace(plan, rate_hz=rate)
-    if seed is not None:
-        plan = replace(plan, seed=seed)
     if view:
         from footfall.simulate.render import view as show
 
