@@ -86,7 +86,7 @@ class Trial:
     @property
     def plan(self) -> Plan:
         """What is walked."""
-        return replace(self.setup.scenario.plan(self.number), seed=self.walk_seed)
+        return self.setup.scenario.plan(self.number, self.walk_seed)
 
     @property
     def worn(self) -> ImuUnit:

@@ -22,6 +22,7 @@ from footfall.errors import InputError
 OUT = Console()
 ERR = Console(stderr=True)
 INTERRUPTED = 130  # as shells have it
+RESUMABLE = 4  # stopped from outside: a full disk, a cluster that is gone
 
 # Of what typer raises for wrong arguments; which library the class comes from depends on its version.
 _USAGE_ERROR: type[BaseException] = typer.BadParameter.__mro__[1]

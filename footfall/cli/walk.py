@@ -67,7 +67,7 @@ def walk(
     elif not view:
         raise InputError("Missing option '--output' / '-o' (see `footfall walk --help`)")
     require_areas(values := parsed(settings or ()), ("scenario",), "walk")
-    plan = with_values(documents(scenario), values).setup().scenario.plan(number - 1)
+    plan = with_values(documents(scenario), values).setup().scenario.plan(number - 1, seed)
     mounts = list(dict.fromkeys(name.strip() for name in mount.split(","))) if mount else []
     for name in mounts:
         if name not in MOUNTS:
@@ -77,8 +77,6 @@ def walk(
     if rate is not None:
         divisor(PHYSICS_STEP, rate)
         plan = replace(plan, rate_hz=rate)
-    if seed is not None:
-        plan = replace(plan, seed=seed)
     if view:
         from footfall.simulate.render import view as show
 

@@ -5,6 +5,7 @@ import pytest
 import typer
 
 from footfall.cli.app import app
+from footfall.errors import InputError
 from footfall.hdr.methods import METHODS
 from footfall.models.imu import EFFECTS, stock_specs
 from footfall.recording import read_recording
@@ -79,6 +80,21 @@ def test_a_walk_is_written_with_its_footfalls(cli, here):
     assert (first.meta["subject"], first.meta["seed"], first.meta["rate_hz"]) == ("reference", 3, 200)
     # The heel's IMU leans the other way.
     assert np.sign(walk.accel[0, 0]) == -np.sign(first.accel[0, 0])
+
+
+def test_a_seed_draws_the_path_too(cli, here, monkeypatch):
+    asked = []
+
+    def walked(plan, **_):
+        asked.append(plan)
+        raise InputError("enough")
+
+    monkeypatch.setattr("footfall.simulate.cache.cached_walk", walked)
+    for options in ("--number 4", "--seed 4", "--number 4 --seed 4", ""):
+        assert cli(f"walk rooms {options} -o walk.parquet")[0] == 2
+    assert [plan.seed for plan in asked] == [4, 4, 4, 1]
+    ends = [round(plan.route.length, 6) for plan in asked]
+    assert ends[0] == ends[1] == ends[2] != ends[3]
 
 
 def test_several_mounts_are_one_walk_in_a_file_each(cli, here):
