@@ -10,6 +10,8 @@ so that `footfall list` does not wait for what `footfall run` loads.
 
 from __future__ import annotations
 
+import logging
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -23,6 +25,7 @@ from footfall.cli.export import export
 from footfall.cli.gate import gate
 from footfall.cli.inspect import inspect
 from footfall.cli.list import list_
+from footfall.cli.logs import start_log
 from footfall.cli.map import map_
 from footfall.cli.parameters import parameters
 from footfall.cli.record import record
@@ -60,9 +63,19 @@ def _main(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Log what is done to standard error.")
+    ] = False,
+    log: Annotated[
+        Path | None,
+        typer.Option(help="File to whose end the log of what is done is written.", show_default=False),
+    ] = None,
 ) -> None:
+    context.call_on_close(start_log(verbose, log))
     if context.invoked_subcommand is None:
         print(context.get_help())
+    else:
+        logging.getLogger("footfall").info("footfall %s: %s", __version__, context.invoked_subcommand)
 
 
 COMMANDS = (

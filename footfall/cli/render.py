@@ -21,6 +21,9 @@ def render(
     seconds: Annotated[
         float, typer.Option(min=0.5, max=60, help="Length of a moving picture, s.", callback=finite)
     ] = 4.0,
+    signals: Annotated[
+        bool, typer.Option("--signals", help="What the IMU says beside a moving picture.")
+    ] = False,
 ) -> None:
     """Draw the walker at the beginning of a walk: moving (.webp) or as a strip of moments (.png).
 
@@ -29,8 +32,8 @@ def render(
     from footfall.scenarios.scenario import load_scenario
     from footfall.simulate.render import render as draw
 
-    require_output(output, (".webp", ".png"))
+    require_output(output, ".webp" if signals else (".webp", ".png"))
     plan = load_scenario(scenario).plan(number - 1)
     with ERR.status("walking and drawing"):
-        pictures = draw(plan, output, skip=skip, seconds=seconds)
+        pictures = draw(plan, output, skip=skip, seconds=seconds, signals=signals)
     say(f"{pictures} pictures: {output}")

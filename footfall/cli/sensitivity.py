@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from footfall.cli.cluster import PatienceOption, SchedulerOption, working
 from footfall.cli.options import JsonOption
 from footfall.cli.terminal import ERR, OUT, print_json, say
 
@@ -27,6 +28,8 @@ def sensitivity(
     workers: Annotated[
         int | None, typer.Option(min=1, help="Number of processes. Default: one a core.", show_default=False)
     ] = None,
+    scheduler: SchedulerOption = None,
+    patience: PatienceOption = 600.0,
     out: Annotated[
         Path | None, typer.Option(help="Folder for the results. Default: out/STUDY.", show_default=False)
     ] = None,
@@ -59,10 +62,10 @@ def sensitivity(
     needed("SALib.sample.sobol")
     asked = read_study(study, {} if fidelity is None else {"fidelity": fidelity})
     folder = out or Path("out") / asked.name
-    with results_folder(folder):
+    with working(scheduler, patience, workers) as crew, results_folder(folder):
         with watching("points", "units recorded") as (trials, (points, heard)):
             watch = Watch(
-                workers=workers,
+                workers=crew,
                 store=folder / "footfalls",
                 on_points=points,
                 on_trials=trials,

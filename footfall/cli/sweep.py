@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from footfall.cli.cluster import PatienceOption, SchedulerOption, working
 from footfall.cli.options import JsonOption, SetOption
 from footfall.cli.terminal import ERR, INTERRUPTED, OUT, print_json, say
 from footfall.errors import InputError
 
 if TYPE_CHECKING:
+    from footfall.scenarios.studies.spreading import Workers
     from footfall.scenarios.studies.study import Study
     from footfall.scenarios.studies.sweep import Progress
 
-RESUMABLE = 4  # exit code: stopped from outside of the study
 REASONS = 12  # that are printed
 _EVERY_S = 30.0  # a line where there is no terminal
 
@@ -44,6 +45,8 @@ def sweep(
     workers: Annotated[
         int | None, typer.Option(min=1, help="Number of processes. Default: one a core.", show_default=False)
     ] = None,
+    scheduler: SchedulerOption = None,
+    patience: PatienceOption = 600.0,
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Run the failed tasks again.")] = False,
     fresh: Annotated[bool, typer.Option("--fresh", help="Delete earlier results first.")] = False,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if any row failed.")] = False,
@@ -73,9 +76,9 @@ def sweep(
         _plan(chosen, folder, workers, as_json)
     else:
         command = " ".join([*told, *([f"--out {out}"] if out else [])])
-        _sweep(
-            chosen, folder, workers, command, as_json=as_json, strict=strict, retry=retry_failed, fresh=fresh
-        )
+        how = {"as_json": as_json, "strict": strict, "retry": retry_failed, "fresh": fresh}
+        with working(scheduler, patience, workers) as crew:
+            _sweep(chosen, folder, crew, command, **how)
 
 
 def _list(as_json: bool) -> None:
@@ -111,7 +114,7 @@ def _plan(study: Study, folder: Path, workers: int | None, as_json: bool) -> Non
 def _sweep(
     study: Study,
     folder: Path,
-    workers: int | None,
+    crew: Workers,
     command: str,
     *,
     as_json: bool,
@@ -119,11 +122,10 @@ def _sweep(
     retry: bool,
     fresh: bool,
 ) -> None:
-    from footfall.scenarios.execute import cores
     from footfall.scenarios.studies.describe import cost_line, headline
     from footfall.scenarios.studies.parts import StudyFolder
     from footfall.scenarios.studies.plan import cost_of, plan_of
-    from footfall.scenarios.studies.sweep import StoppedError
+    from footfall.scenarios.studies.spreading import count
     from footfall.scenarios.studies.sweep import sweep as perform
 
     start = time.monotonic()
@@ -132,14 +134,10 @@ def _sweep(
         left = [] if fresh or retry else StudyFolder(folder).left(made.tasks)
     say(headline(made))
     if not (fresh or retry):
-        say(f"   {cost_line(cost_of(made, left), workers or cores())}")
+        say(f"   {cost_line(cost_of(made, left), count(crew))}")
     with _stopping() as asked, _showing(study.name) as show:
         keys = {"fresh": fresh, "retry_failed": retry, "command": command, "on_progress": show}
-        try:
-            *_, now = perform(made, folder, workers, stop=lambda: bool(asked), **keys)
-        except StoppedError as error:
-            say(f"footfall: stopped: {error}; start it again to go on")
-            raise typer.Exit(RESUMABLE) from None
+        *_, now = perform(made, folder, crew, stop=lambda: bool(asked), **keys)
     for warning in now.warnings:
         say(f"{folder}: {warning}")
     if now.stage == "stopped":

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from footfall.cli.cluster import PatienceOption, SchedulerOption, working
 from footfall.cli.options import JsonOption
 from footfall.cli.terminal import ERR, OUT, print_json, say
 
@@ -45,6 +46,8 @@ def tune(
     workers: Annotated[
         int | None, typer.Option(min=1, help="Number of processes. Default: one a core.", show_default=False)
     ] = None,
+    scheduler: SchedulerOption = None,
+    patience: PatienceOption = 600.0,
     out: Annotated[
         Path | None, typer.Option(help="Folder for the results. Default: out/STUDY.", show_default=False)
     ] = None,
@@ -83,10 +86,10 @@ def tune(
             words += [f"--{key}", text]
     asked = read_tuning(study, changes)
     folder = out or Path("out") / asked.name
-    with results_folder(folder):
+    with working(scheduler, patience, workers) as crew, results_folder(folder):
         with watching("units recorded", "sets tried") as (shown, (heard, tried)):
             tuned = perform_tuning(
-                asked, workers=workers, folder=folder, on_cases=heard, on_trials=shown, on_tried=tried
+                asked, workers=crew, folder=folder, on_cases=heard, on_trials=shown, on_tried=tried
             )
         document = tuning_document(tuned, shlex.join(words))
         with ERR.status("writing files and the figure"):

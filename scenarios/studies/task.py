@@ -125,6 +125,10 @@ class Done:
         return sum(row.score is None for row in self.rows)
 
 
+class StoppedError(Exception):
+    """Something outside of the study ended it; it may be taken up where it was."""
+
+
 class DiskFullError(Exception):
     """There is no room left where a walk, or what a method writes, is to be."""
 

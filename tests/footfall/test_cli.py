@@ -102,6 +102,32 @@ def test_a_seed_draws_the_path_too(cli, here, monkeypatch):
     assert ends[0] == ends[1] == ends[2] != ends[3]
 
 
+def test_several_mounts_are_one_walk_in_a_file_each(cli, here):
+    code, out, err = cli("walk short.toml --mount instep,heel,instep-left -o w.parquet")
+    assert (code, out) == (0, "")
+    instep, heel, left = (read_walk(f"w-{name}.parquet") for name in ("instep", "heel", "instep-left"))
+    assert [line.rpartition(" ")[2] for line in err.splitlines()] == [
+        f"w-{name}.parquet" for name in ("instep", "heel", "instep-left")
+    ]
+    assert not (here / "w.parquet").exists()
+    np.testing.assert_array_equal(instep.gyro, read_walk("walk.parquet").gyro)
+    np.testing.assert_array_equal(heel.contact, instep.contact)  # the same steps to the last bit
+    # Both sit on one foot: their distance does not change, up to where each is in the room.
+    apart = np.linalg.norm(heel.position - instep.position, axis=1)
+    np.testing.assert_allclose(apart, np.hypot(0.135, 0.02), atol=1e-6)
+    # The other foot stands while this one swings.
+    assert not (left.stance & instep.stance)[len(left.t) // 2 :][: len(left.t) // 4].all()
+    assert np.abs(left.position[0, 1] - instep.position[0, 1]) > 0.1
+
+
+def test_one_unknown_mount_among_several_writes_nothing(cli, here):
+    before = set(here.iterdir())
+    code, _, err = cli("walk short.toml --mount instep,hel -o w.parquet")
+    assert code == 2
+    assert "--mount 'hel' is unknown; did you mean heel" in err
+    assert set(here.iterdir()) == before
+
+
 def test_seeds_make_walks(cli, here):
     for name, options in (("again", ""), ("same", "--seed 3 --no-cache"), ("other", "--seed 8")):
         assert cli(f"walk short.toml {options} -o {name}.parquet")[0] == 0
