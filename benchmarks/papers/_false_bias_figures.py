@@ -64,9 +64,7 @@ def cause(path: Path, simulated: Feet, made_of: Mapping[str, float]) -> None:
     axis = axes[0, 2]
     names = list(made_of)[::-1]
     values = [made_of[name] for name in names]
-    colours = [
-        "#c1440e" if name in ("sideways", "first third of the still time") else "#b9b9b9" for name in names
-    ]
+    colours = ["#c1440e" if name == "sideways" else "#b9b9b9" for name in names]
     colours[-1] = "#222222"
     axis.barh(names, values, color=colours)
     for k, value in enumerate(values):
@@ -126,5 +124,5 @@ def cure(path: Path, simulated: Feet, pairs: Mapping[str, tuple[float, float]]) 
     axis.grid(axis="y", visible=False)
     axis.set_xlabel("turned away from dead reckoning with the bias at rest (deg/s)")
     axis.set_title("b  Real feet: false bias of the filter, less is better", loc="left", fontsize=10)
-    axis.legend(frameon=False, fontsize=8, ncols=2, loc="lower right", bbox_to_anchor=(1.0, 1.0))
+    axis.legend(frameon=False, fontsize=8, ncols=2, loc="upper left", bbox_to_anchor=(-0.02, -0.13))
     save(figure, path)
