@@ -13,6 +13,7 @@ import numpy as np
 from footfall.compiled import kernel
 from footfall.hdr.hypotheses._linear import (
     ALIGNED,
+    ANEW,
     BIAS,
     CURVATURE,
     CURVE,
@@ -123,13 +124,14 @@ def step(x, P, weights, labels, counters, lengths, x2, P2, row, c, out):  # type
     resting(at_rest, row)
     if good:
         seeing(h, row)
-    room = count * (BRANCHES + 2 * habits)
+    room = count * (BRANCHES + 3 * habits)
     chance = np.empty(room)
     branch = np.empty((room, LABELS), dtype=np.int64)
     n = 0
     lot_gentle, lot_tight = math.log(c.gentle_chance), math.log(1.0 - c.gentle_chance)
     log_bends, wavy = math.log(c.curve_curve), c.meander * c.meander * length
-    bare = math.log(1.0 - c.along)
+    bare = math.log((1.0 - c.along) * (1.0 - c.along_anew))
+    anew = math.log((1.0 - c.along) * c.along_anew)
     for j in range(count):
         mode, habit, size = labels[j, MODE], labels[j, HABIT], c.scales[labels[j, SCALE]]
         drift(x[j], P[j], row, size, c, a, g)
@@ -160,6 +162,7 @@ def step(x, P, weights, labels, counters, lengths, x2, P2, row, c, out):  # type
             n = put(branch, chance, n, labels[j], j, STRAIGHT, other, STAYS, to_straight + lone)
             if tried:
                 n = put(branch, chance, n, labels[j], j, STRAIGHT, other, ALIGNED, to_straight + lot + along)
+                n = put(branch, chance, n, labels[j], j, STRAIGHT, other, ANEW, to_straight + lot + anew)
         # turn: of wander beside the new line nothing is known
         wide = turning_spread(P[j], h, k, s, habit, c)
         off = left + h[FOOT] * x[j, FOOT] + h[FOOT_BEFORE] * x[j, FOOT_BEFORE]
@@ -297,6 +300,8 @@ def alike(x2, P2, labels, kept, label, row, c):  # type: ignore[no-untyped-def]
         if label[MODE] == CURVE and not near(y, z, Q, CURVATURE, c.merge):
             continue
         if not near(y, z, Q, WARM, c.merge):
+            continue
+        if label[WORLD] == ALONG and abs(y[REFERENCE] - z[REFERENCE]) > c.beside:
             continue
         apart, spread = y[BIAS] - z[BIAS], Q[BIAS, BIAS]
         for d in range(DIRECTIONS):

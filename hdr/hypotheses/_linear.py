@@ -37,7 +37,8 @@ LOADED = 11  # standard normal, of each direction of loads (z)
 STATES = LOADED + DIRECTIONS
 
 STRAIGHT, CURVE, TURN = range(3)
-STAYS, GENTLE, TIGHT, ALIGNED = range(4)  # how a mode is entered: two kinds of curves, a dominant direction
+# How a mode is entered: two kinds of curves; a straight along a dominant direction, or the first of new ones.
+STAYS, GENTLE, TIGHT, ALIGNED, ANEW = range(5)
 
 
 @kernel(error_model="numpy")
@@ -224,6 +225,11 @@ def move(x, P, mode, entry, habit, length, c, a, g):  # type: ignore[no-untyped-
         P[PATH, PATH] += c.turn * c.turn
         return
     P[PATH, PATH] += c.meander * c.meander * length
+    if entry == ANEW:
+        turns = nearest(x[PATH] - x[REFERENCE], c)  # alike, the nearest to the old reference is taken
+        become(x, P, REFERENCE, PATH)
+        x[REFERENCE] -= turns
+        P[REFERENCE, REFERENCE] += c.beside * c.beside
     if mode == CURVE:
         if entry != STAYS:
             entered = c.gentle if entry == GENTLE else c.tight

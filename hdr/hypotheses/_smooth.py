@@ -14,6 +14,7 @@ import numpy as np
 from footfall.compiled import kernel
 from footfall.hdr.hypotheses._linear import (
     ALIGNED,
+    ANEW,
     ASIDE,
     CURVATURE,
     CURVE,
@@ -183,6 +184,8 @@ def backwards(  # type: ignore[no-untyped-def]
                 a[:] = 0.0
                 a[CURVATURE] = length[i]
                 pull_add(y, L, PATH, a, g)
+            if entries[i] == ANEW:
+                pull_become(y, L, REFERENCE, PATH)
             if modes[i] != CURVE or entries[i] != STAYS:
                 pull_empty(y, L, CURVATURE)
         habit = habits[i - 1] if i > 1 else first_habit

@@ -13,7 +13,7 @@ from footfall.hdr.hypotheses.track import UNITS, hypotheses_track
 from footfall.hdr.methods import METHODS
 from tests.helpers.drifting_feet import DEG, drift_of, feet, turned, without
 
-FEW = HypothesesParams(hypotheses=24)
+FEW = HypothesesParams(hypotheses=32)
 BLOCK = np.concatenate([np.zeros(80), [90 * DEG], np.zeros(80), [-90 * DEG], np.zeros(80)])
 BOTH = pytest.mark.parametrize("method", [beliefs, smoothed], ids=["causal", "smoothed"])
 
@@ -135,7 +135,7 @@ def test_a_constant_bias_changes_nothing_on_a_straight(method):
     found = [method(feet(np.zeros(400), drift)).heading for drift in (0.0, 0.06 * DEG)]
     drift = drift_of(feet(np.zeros(400)), 0.06 * DEG)
     assert drift[-1] > 25 * DEG
-    assert np.abs(found[1] - found[0])[-50:].max() < 1 * DEG
+    assert np.abs(found[1] - found[0])[-50:].max() < 1.2 * DEG
 
 
 def test_a_slower_clock_is_the_same_walk():
@@ -158,7 +158,7 @@ def test_a_slower_clock_is_the_same_walk():
         flicker_s=FEW.flicker_s * 2,
         warmth=FEW.warmth / 2,
         wander_s=tuple(2 * value for value in FEW.wander_s),
-        hypotheses=24,
+        hypotheses=32,
     )
     np.testing.assert_allclose(beliefs(slow, half).heading, beliefs(walked, FEW).heading, atol=1e-9)
     np.testing.assert_allclose(smoothed(slow, half).heading_sd, smoothed(walked, FEW).heading_sd, atol=1e-9)
@@ -239,7 +239,8 @@ def test_on_a_straight_known_to_be_one_the_rate_is_that_of_least_squares():
         straight_curve=(1e-12,),
         place_m=1e-9,
         meander=0.0,
-        straight_turn=1e-12,
+        straight_turn=(1e-12,),
+        turn_straight=(0.6,),
         straight_first=1 - 1e-9,
     )
     found = beliefs(walked, only)
@@ -253,7 +254,7 @@ def test_on_a_straight_known_to_be_one_the_rate_is_that_of_least_squares():
 def test_what_is_undecided_is_told():
     """A bend as slow as a drift may be either: two headings, both with weight, and an SD that spans them."""
     found = beliefs(feet(np.concatenate([np.zeros(40), np.full(120, 0.12 * DEG)]), 0.02 * DEG))
-    assert 0.1 < found.second_weight[-1] < 0.6
+    assert 0.1 < found.second_weight[-1] < 0.9
     assert 0.1 < found.curve[-1] < 0.7
     assert abs(found.second_heading[-1] - found.heading[-1]) > 5 * DEG
     assert found.heading_sd[-1] > 5 * DEG > 3 * found.heading_sd[40]
@@ -298,7 +299,7 @@ def test_the_track_is_turned_and_tells_its_evidence():
     [
         ({"wander_m": (0.1,)}, "expected as many of each"),
         ({"scales": ()}, "scales: expected at least one"),
-        ({"hypotheses": 16}, "expected 24 or more, four for each habit and scale"),
+        ({"hypotheses": 16}, "expected 32 or more, four for each habit and scale"),
         ({"turn": -1.0}, "turn = -1.0 rad, expected a positive number"),
     ],
 )
@@ -317,3 +318,27 @@ def test_bad_footfalls_are_refused():
     walked = feet(np.zeros(5))
     with pytest.raises(InputError, match="not positive"):
         beliefs(replace(walked, interval=0 * walked.interval))
+
+
+def two_buildings(off):
+    """Turns of corridors at right angles, and of as many that lie `off` (rad) beside them."""
+    rng = np.random.default_rng(3)
+    legs = [np.zeros(9) for _ in range(28)]
+    for leg in legs:
+        leg[0] = rng.choice([-1.0, 1.0]) * 90 * DEG
+    legs[14][0] += off
+    return np.concatenate([np.zeros(8), *legs])
+
+
+@BOTH
+def test_where_directions_change_new_ones_are_learned(method):
+    drift = 0.04 * DEG
+    walked = feet(two_buildings(12 * DEG), drift)
+    off = [error(walked, method(walked, HypothesesParams(along_anew=a)), drift)[-60:] for a in (0.4, 1e-9)]
+    assert np.abs(off[0]).mean() < 1.5 * DEG
+    assert np.abs(off[0]).mean() < np.abs(off[1]).mean()
+
+
+def test_habits_are_lists_of_one_length():
+    with pytest.raises(InputError, match="wander_m, wander_s, straight_curve, straight_turn, turn_straight"):
+        HypothesesParams(straight_turn=(0.01,))

@@ -8,10 +8,10 @@ import pytest
 from footfall.hdr.hypotheses import _beam, _plain, _smooth
 from footfall.hdr.hypotheses._linear import (
     ALIGNED,
+    ANEW,
     CURVE,
     DRIFT,
     GENTLE,
-    PATH,
     REFERENCE,
     STATES,
     STAYS,
@@ -61,7 +61,8 @@ def test_the_smoother_equals_rauch_tung_striebel(rows):
     modes, entries, habits = np.zeros(n, dtype=int), np.zeros(n, dtype=int), np.zeros(n, dtype=int)
     modes[20:22], modes[45:70], entries[45], habits[22:] = TURN, CURVE, GENTLE, 2
     modes[10:15] = CURVE
-    entries[22] = entries[70] = ALIGNED
+    entries[22], entries[70], entries[76] = ALIGNED, ALIGNED, ANEW
+    modes[75], entries[80] = TURN, ALIGNED
     drift, variance = _smooth.smooth(rows, c, modes, habits, entries, c.scales[0], CURVE, 1, False)
 
     before = _plain.first(c, rows[1, COURSE])
@@ -83,14 +84,16 @@ def test_the_smoother_equals_rauch_tung_striebel(rows):
             length = 0.5 * (rows[i, DISTANCE] + (last or rows[i, DISTANCE]))
             G, R = _plain.mode_model(modes[i], entries[i], habits[i], length, c)
             last = rows[i, DISTANCE]
-        steps.append((mean, cov, G, G @ mean, G @ cov @ G.T + R))
+        moved = G @ mean
+        if entries[i] == ANEW:
+            moved[REFERENCE] -= _plain.quarter_turns(mean, c)
+        steps.append((mean, cov, G, moved, G @ cov @ G.T + R))
         mean, cov = steps[-1][3:]
         if good:
             seen = _plain.course_seen(rows[i])
             mean, cov, _ = _plain.updated(mean, cov, _plain.course_row(rows[i]), seen, c.course**2)
         if entries[i] == ALIGNED:
-            sector = 2 * np.pi / c.directions
-            along = sector * np.round((mean[PATH] - mean[REFERENCE]) / sector)
+            along = _plain.quarter_turns(mean, c)
             mean, cov, _ = _plain.updated(mean, cov, _plain.along_row(), along, c.beside**2)
     found = [(mean[DRIFT], cov[DRIFT, DRIFT])]
     for k in range(len(steps) - 1, 0, -1):
