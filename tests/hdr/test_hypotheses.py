@@ -44,12 +44,13 @@ def error(footfalls, found, drift):
     return found.heading - footfalls.heading + drift_of(footfalls, drift)
 
 
-def test_footfall_by_footfall_it_gives_the_numbers_of_the_whole():
-    walked = varied()
+@pytest.mark.parametrize("reference", [None, 100 * DEG], ids=["learned", "known"])
+def test_footfall_by_footfall_it_gives_the_numbers_of_the_whole(reference):
+    walked, params = turned(varied(), 2.0), replace(FEW, reference=reference)
     numbers, loads = given(walked)
-    one = Hypotheses(FEW)
+    one = Hypotheses(params)
     found = [one.update(Given(*row, load)) for row, load in zip(numbers, loads, strict=True)]
-    for name, values in beliefs(walked, FEW)._asdict().items():
+    for name, values in beliefs(walked, params)._asdict().items():
         told = np.array([getattr(each, name) for each in found])
         np.testing.assert_allclose(told, values, rtol=0, atol=1e-9, err_msg=name)
 
@@ -112,6 +113,21 @@ def test_a_known_direction_tells_the_drift_from_the_first_street_on(method):
         for params in (known, replace(known, reference=None))
     ]
     assert off[0] < 0.7 * off[1]
+
+
+def test_hindsight_knows_the_direction_too():
+    """After few strides, of which one sequence tells, the end is the same with hindsight and without."""
+    walked = turned(feet(np.zeros(6), 0.3 * DEG), 120 * DEG)
+    params = HypothesesParams(
+        reference=30 * DEG,
+        bias=0.3 * DEG,
+        along_first=0.99,
+        beside=0.1 * DEG,
+        straight_first=0.999,
+        scales=(1.0,),
+    )
+    ends = [method(walked, params).heading[-1] for method in (beliefs, smoothed)]
+    assert ends[0] == pytest.approx(ends[1], abs=0.2 * DEG)
 
 
 @BOTH
