@@ -39,7 +39,13 @@ def told(scales: tuple[float, ...] = (1.0, 0.1), **changed: float) -> Hypotheses
 
 def followed(wander: float, beside: float, course: float, scale: float) -> HypothesesParams:
     """The same that knows how closely the path is followed, and one scale of the sensor's priors."""
-    lines = {"wander_m": (wander,), "wander_s": (1.7,), "straight_curve": (0.0004,)}
+    lines = {
+        "wander_m": (wander,),
+        "wander_s": (1.7,),
+        "straight_curve": (0.0004,),
+        "straight_turn": (0.01,),
+        "turn_straight": (0.6,),
+    }
     return told((scale,), beside=radians(beside), course=radians(course), **lines)
 
 

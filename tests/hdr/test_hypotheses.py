@@ -13,7 +13,7 @@ from footfall.hdr.hypotheses.track import UNITS, hypotheses_track
 from footfall.hdr.methods import METHODS
 from tests.helpers.drifting_feet import DEG, drift_of, feet, turned, without
 
-FEW = HypothesesParams(hypotheses=32)
+FEW = HypothesesParams(hypotheses=40)
 BLOCK = np.concatenate([np.zeros(80), [90 * DEG], np.zeros(80), [-90 * DEG], np.zeros(80)])
 BOTH = pytest.mark.parametrize("method", [beliefs, smoothed], ids=["causal", "smoothed"])
 
@@ -174,7 +174,7 @@ def test_a_slower_clock_is_the_same_walk():
         flicker_s=FEW.flicker_s * 2,
         warmth=FEW.warmth / 2,
         wander_s=tuple(2 * value for value in FEW.wander_s),
-        hypotheses=32,
+        hypotheses=40,
     )
     np.testing.assert_allclose(beliefs(slow, half).heading, beliefs(walked, FEW).heading, atol=1e-9)
     np.testing.assert_allclose(smoothed(slow, half).heading_sd, smoothed(walked, FEW).heading_sd, atol=1e-9)
@@ -315,7 +315,7 @@ def test_the_track_is_turned_and_tells_its_evidence():
     [
         ({"wander_m": (0.1,)}, "expected as many of each"),
         ({"scales": ()}, "scales: expected at least one"),
-        ({"hypotheses": 16}, "expected 32 or more, four for each habit and scale"),
+        ({"hypotheses": 16}, "expected 40 or more, four for each habit and scale"),
         ({"turn": -1.0}, "turn = -1.0 rad, expected a positive number"),
     ],
 )

@@ -25,7 +25,7 @@ from tests.hdr.test_hypotheses import varied
 from tests.helpers.drifting_feet import DEG
 
 # No two habits are alike, or hypotheses of equal weight come in any order.
-PARAMS = HypothesesParams(hypotheses=40, wander_m=(0.1, 0.11, 0.4, 0.09))
+PARAMS = HypothesesParams(hypotheses=40, wander_m=(0.1, 0.11, 0.4, 0.5, 0.09))
 
 
 @pytest.fixture(scope="module")
