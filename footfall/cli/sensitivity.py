@@ -37,7 +37,8 @@ def sensitivity(
 ) -> None:
     """Tell which parameters a method's error depends on, alone and together (Morris, Sobol).
 
-    The folder gets sensitivity.json, points.parquet and the figures (PNG). Needs footfall[study].
+    The folder gets report.html to look at, sensitivity.json, points.parquet and the figures (PNG). Needs
+    footfall[study].
     """
     from footfall.scenarios.report.progress import watching
     from footfall.scenarios.report.results import results_folder
