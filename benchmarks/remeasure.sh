@@ -41,5 +41,8 @@ measure robustness python -m benchmarks.validation.robustness --seeds 20
 measure pushes python -m benchmarks.validation.robustness straight --metres 400 --push 10 --seeds 4
 measure studies python -m benchmarks.studies.pages --docs docs --out "$out/studies"
 measure hypotheses python -m benchmarks.validation.hypotheses --page docs/hypotheses.md
+measure directions python -m benchmarks.papers.ihde_hypotheses --page docs/hypotheses.md
+measure wander python -m benchmarks.validation.hypotheses_wander --seeds 4 --page docs/hypotheses.md
+measure figures python -m benchmarks.validation.hypotheses_figures --figures docs/images
 measure tutorial python docs/examples/spare_torque.py --seed 1 --out "$out/residual.npz" --page docs/tutorial_environment.md
 measure render footfall render straight -o docs/images/walker.png

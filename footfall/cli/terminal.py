@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import math
 import os
 import shlex
@@ -15,6 +16,7 @@ from typing import Any
 import typer
 from rich.console import Console
 
+from footfall.cli.logs import SAID
 from footfall.errors import InputError
 
 OUT = Console()
@@ -33,6 +35,7 @@ def print_json(document: Any) -> None:
 
 def say(text: str) -> None:
     """A line for people, on standard error."""
+    logging.getLogger(SAID).info("%s", text)
     ERR.print(text, markup=False, highlight=False, soft_wrap=True)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from footfall.compiled import kernel
 from footfall.hdr.hypotheses._linear import (
     ALIGNED,
+    ANEW,
     BIAS,
     CURVATURE,
     CURVE,
@@ -41,6 +42,7 @@ from footfall.hdr.hypotheses._linear import (
     resting,
     seeing,
     seen,
+    set_out,
     update,
 )
 from footfall.hdr.hypotheses._sight import (
@@ -68,6 +70,12 @@ BRANCHES = 4  # of a hypothesis, beside straights: two for each habit
 
 
 @kernel(error_model="numpy")
+def tells(world, mode, c):  # type: ignore[no-untyped-def]
+    """Whether a known dominant direction tells that in which a hypothesis sets out."""
+    return world == ALONG and mode == STRAIGHT and not math.isnan(c.reference)
+
+
+@kernel(error_model="numpy")
 def begin_all(x, P, weights, labels, counters, course, c):  # type: ignore[no-untyped-def]
     """Hypotheses before the first stride: each mode, habit and scale."""
     n = 0
@@ -80,7 +88,8 @@ def begin_all(x, P, weights, labels, counters, course, c):  # type: ignore[no-un
             chance = exists * (c.straight_first if mode == STRAIGHT else 1.0 - c.straight_first)
             for habit in range(len(c.wander_m)):
                 for scale in range(len(c.scales)):
-                    begin(x[n], P[n], course, mode, habit, c.scales[scale], c)
+                    told = tells(world, mode, c)
+                    begin(x[n], P[n], course, mode, habit, c.scales[scale], told, c)
                     weights[n] = math.log(chance / ways)
                     labels[n, MODE], labels[n, HABIT], labels[n, SCALE] = mode, habit, scale
                     labels[n, WORLD] = world
@@ -101,7 +110,7 @@ def step(x, P, weights, labels, counters, lengths, x2, P2, row, c, out):  # type
             counters[BEGUN] = 2  # begun before any direction
     if good and counters[BEGUN] == 2:
         for j in range(counters[COUNT]):
-            x[j, PATH] = x[j, REFERENCE] = row[COURSE] - x[j, DRIFT]
+            set_out(x[j], row[COURSE], tells(labels[j, WORLD], labels[j, MODE], c), c)
         counters[BEGUN] = 1
     count = counters[COUNT]
     length = 0.5 * (row[DISTANCE] + lengths[LAST]) if lengths[LAST] > 0.0 else row[DISTANCE]
@@ -115,13 +124,14 @@ def step(x, P, weights, labels, counters, lengths, x2, P2, row, c, out):  # type
     resting(at_rest, row)
     if good:
         seeing(h, row)
-    room = count * (BRANCHES + 2 * habits)
+    room = count * (BRANCHES + 3 * habits)
     chance = np.empty(room)
     branch = np.empty((room, LABELS), dtype=np.int64)
     n = 0
     lot_gentle, lot_tight = math.log(c.gentle_chance), math.log(1.0 - c.gentle_chance)
     log_bends, wavy = math.log(c.curve_curve), c.meander * c.meander * length
-    bare = math.log(1.0 - c.along)
+    bare = math.log((1.0 - c.along) * (1.0 - c.along_anew))
+    anew = math.log((1.0 - c.along) * c.along_anew)
     for j in range(count):
         mode, habit, size = labels[j, MODE], labels[j, HABIT], c.scales[labels[j, SCALE]]
         drift(x[j], P[j], row, size, c, a, g)
@@ -152,6 +162,7 @@ def step(x, P, weights, labels, counters, lengths, x2, P2, row, c, out):  # type
             n = put(branch, chance, n, labels[j], j, STRAIGHT, other, STAYS, to_straight + lone)
             if tried:
                 n = put(branch, chance, n, labels[j], j, STRAIGHT, other, ALIGNED, to_straight + lot + along)
+                n = put(branch, chance, n, labels[j], j, STRAIGHT, other, ANEW, to_straight + lot + anew)
         # turn: of wander beside the new line nothing is known
         wide = turning_spread(P[j], h, k, s, habit, c)
         off = left + h[FOOT] * x[j, FOOT] + h[FOOT_BEFORE] * x[j, FOOT_BEFORE]
@@ -289,6 +300,8 @@ def alike(x2, P2, labels, kept, label, row, c):  # type: ignore[no-untyped-def]
         if label[MODE] == CURVE and not near(y, z, Q, CURVATURE, c.merge):
             continue
         if not near(y, z, Q, WARM, c.merge):
+            continue
+        if label[WORLD] == ALONG and abs(y[REFERENCE] - z[REFERENCE]) > c.beside:
             continue
         apart, spread = y[BIAS] - z[BIAS], Q[BIAS, BIAS]
         for d in range(DIRECTIONS):

@@ -12,6 +12,7 @@ import numpy as np
 from footfall.hdr.hypotheses import _beam, _linear, _sight
 from footfall.hdr.hypotheses._linear import (
     ALIGNED,
+    ANEW,
     ASIDE,
     BIAS,
     CURVATURE,
@@ -71,6 +72,12 @@ def first(c: Constants, course: float) -> list[Hypothesis]:
             cov = np.diag(sd**2) + new_line(c, habit)
             cov[REFERENCE, PATH] = cov[PATH, REFERENCE] = cov[PATH, PATH]
             cov[REFERENCE, REFERENCE] = cov[PATH, PATH] + c.beside**2
+            if world == _beam.ALONG and mode == STRAIGHT and not math.isnan(c.reference):
+                mean[REFERENCE] = c.reference
+                sector = 2 * math.pi / c.directions
+                mean[PATH] = c.reference + sector * math.floor((course - c.reference) / sector + 0.5)
+                lines = c.beside**2 * np.array([[2, 1], [1, 1]])
+                cov[np.ix_([PATH, REFERENCE], [PATH, REFERENCE])] = lines
             weight = math.log(chance / ways)
             found.append(Hypothesis(mode, habit, scale, world, STAYS, 0, False, weight, mean, cov))
     return found
@@ -149,7 +156,19 @@ def mode_model(
         entered[CURVATURE, CURVATURE] = new**2
         Q = Q + F @ entered @ F.T
         Q[CURVATURE, CURVATURE] += c.bending**2 * length
-    return F @ np.diag(keep), Q
+    F = F @ np.diag(keep)
+    if entry == ANEW:
+        same = np.eye(STATES)
+        same[REFERENCE] = same[PATH]
+        F, Q = same @ F, same @ Q @ same.T
+        Q[REFERENCE, REFERENCE] += c.beside**2
+    return F, Q
+
+
+def quarter_turns(mean: np.ndarray, c: Constants) -> float:
+    """From the reference to the dominant direction nearest to the path; quarters if there are four."""
+    sector = 2 * math.pi / c.directions
+    return sector * math.floor((mean[PATH] - mean[REFERENCE]) / sector + 0.5)
 
 
 def course_row(row: np.ndarray) -> np.ndarray:
@@ -218,13 +237,14 @@ class PlainBeam:
         c = self.c
         F, Q = mode_model(child.mode, child.entry, child.habit, length, c)
         mean, cov = F @ child.mean, F @ child.cov @ F.T + Q
+        if child.entry == ANEW:
+            mean[REFERENCE] -= quarter_turns(child.mean, c)
         mean, cov, seen = updated(mean, cov, course_row(row), course_seen(row), c.course**2)
         weight = child.weight + seen
         if child.entry == ALIGNED:
-            sector = 2 * math.pi / c.directions
-            along = sector * math.floor((mean[PATH] - mean[REFERENCE]) / sector + 0.5)
+            along = quarter_turns(mean, c)
             mean, cov, seen = updated(mean, cov, along_row(), along, c.beside**2)
-            weight += seen + math.log(sector)
+            weight += seen + math.log(2 * math.pi / c.directions)
         return replace(child, mean=mean, cov=cov, weight=weight)
 
     def _moved(self, each: Hypothesis, row: np.ndarray) -> Hypothesis:
@@ -252,9 +272,11 @@ class PlainBeam:
                 lot = math.log(1 - c.habit_change if habit == of.habit else c.habit_change / others)
             lot += chances[of.mode, STRAIGHT]
             new = of.world == _beam.ALONG and of.mode == TURN
-            found.append((STRAIGHT, habit, STAYS, lot + (math.log(1 - c.along) if new else 0.0)))
+            bare = math.log((1 - c.along) * (1 - c.along_anew)) if new else 0.0
+            found.append((STRAIGHT, habit, STAYS, lot + bare))
             if new:
                 found.append((STRAIGHT, habit, ALIGNED, lot + math.log(c.along)))
+                found.append((STRAIGHT, habit, ANEW, lot + math.log((1 - c.along) * c.along_anew)))
         found.append((TURN, of.habit, STAYS, chances[of.mode, TURN]))
         to_curve = chances[of.mode, CURVE]
         if of.mode == CURVE:
@@ -314,6 +336,8 @@ class PlainBeam:
         apart = np.abs(one.mean - other.mean)
         near = apart <= self.c.merge * np.sqrt(np.maximum(np.diag(other.cov), 0.0))
         judged = [DRIFT, PATH, WARM] + ([CURVATURE] if one.mode == CURVE else [])
+        if one.world == _beam.ALONG and apart[REFERENCE] > self.c.beside:
+            return False
         a = rates(row)
         a[[FLICKER, WARM]] = 0.0
         spread = float(np.sum(a**2 * np.diag(other.cov)))

@@ -12,6 +12,13 @@ from footfall.errors import InputError
 from footfall.settings import require, setting
 
 DEG = math.radians(1.0)
+HABITS = (
+    "wander_m",
+    "wander_s",
+    "straight_curve",
+    "straight_turn",
+    "turn_straight",
+)
 
 
 @dataclass(frozen=True)
@@ -30,7 +37,8 @@ class HypothesesParams:
     g_sensitivity : rad/s per m/s2; scale : of gyro scale and misalignment; g_squared : rad/s per (m/s2)^2
     scales : by which all sensor priors are multiplied: how good the gyro is, is learned among these
     wander_m, wander_s, straight_curve : habits of walking, learned among these: lateral wander, its standard
-        deviation and time (sl, tl), and the chance that a straight becomes a curve
+        deviation and time (sl, tl), and the chance that a straight becomes a curve; straight_turn and
+        turn_straight are a habit's, too
     place_m : scatter of where a foot lands beside it (seta)
     course : rad, scatter of a stride's direction (sv)
     meander : rad/rt-m, by which a straight is none (qs)
@@ -42,8 +50,10 @@ class HypothesesParams:
     straight_first : chance that the walk begins with a straight
     turn_after_short : chance of a turn after strides too short to have a direction
     shortest_m : m, a stride that has a direction
-    directions : evenly spaced dominant directions, of which none need exist; along_first : chance that they
-        do; along : chance that a straight after a turn then lies along one; beside : rad, by which not quite
+    directions : evenly spaced dominant directions, of which none need exist; reference : rad, one of them,
+        where that is known; along_first : chance that they exist; along : chance that a straight after a turn
+        then lies along one; along_anew : chance that one that does not is the first along others
+    beside : rad, by which a straight is not quite along a dominant direction
     hypotheses : most that are kept; prune : nats below the best at which one is dropped; sprout : the same of
         one whose mode is new
     merge : standard deviations within which two of the same kind are one
@@ -61,9 +71,9 @@ class HypothesesParams:
     scale: float = setting(0.003, ge=0)
     g_squared: float = setting(5e-4 * DEG / 9.80665**2, unit="rad/s per (m/s2)2", ge=0)
     scales: tuple[float, ...] = setting((1.0, 0.1), gt=0)
-    wander_m: tuple[float, ...] = setting((0.1, 0.1, 0.4), unit="m", gt=0)
-    wander_s: tuple[float, ...] = setting((1.7, 1.7, 3.0), unit="s", gt=0)
-    straight_curve: tuple[float, ...] = setting((0.0004, 0.06, 0.0004), gt=0, lt=0.5)
+    wander_m: tuple[float, ...] = setting((0.1, 0.1, 0.4, 0.5, 0.1), unit="m", gt=0)
+    wander_s: tuple[float, ...] = setting((1.7, 1.7, 3.0, 1.8, 1.7), unit="s", gt=0)
+    straight_curve: tuple[float, ...] = setting((0.0004, 0.06, 0.0004, 0.0004, 0.0004), gt=0, lt=0.5)
     place_m: float = setting(0.012, unit="m", gt=0)
     course: float = setting(0.5 * DEG, unit="rad", gt=0)
     meander: float = setting(0.02 * DEG, unit="rad/rt-m", ge=0)
@@ -72,32 +82,32 @@ class HypothesesParams:
     tight: float = setting(2.5 * DEG, unit="rad/m", gt=0)
     gentle_chance: float = setting(0.6, gt=0, lt=1)
     bending: float = setting(0.0003 * DEG, unit="rad/m/rt-m", ge=0)
-    straight_turn: float = setting(0.01, gt=0, lt=0.5)
+    straight_turn: tuple[float, ...] = setting((0.01, 0.01, 0.01, 0.01, 0.05), gt=0, lt=0.5)
     curve_straight: float = setting(0.006, gt=0, lt=0.3)
     curve_turn: float = setting(0.01, gt=0, lt=0.3)
     curve_curve: float = setting(0.0025, gt=0, lt=0.3)
-    turn_straight: float = setting(0.6, gt=0, lt=0.8)
+    turn_straight: tuple[float, ...] = setting((0.6, 0.6, 0.6, 0.6, 0.3), gt=0, lt=0.8)
     turn_curve: float = setting(0.1, gt=0, lt=0.2)
     straight_first: float = setting(0.9, gt=0, lt=1)
     habit_change: float = setting(0.05, gt=0, lt=1)
     turn_after_short: float = setting(0.3, gt=0, lt=1)
     shortest_m: float = setting(0.45, unit="m", gt=0)
     directions: int = setting(4, ge=1, le=36)
+    reference: float | None = setting(None, unit="rad")
     along_first: float = setting(0.2, ge=0, lt=1)
     along: float = setting(0.9, gt=0, lt=1)
+    along_anew: float = setting(0.4, gt=0, lt=1)
     beside: float = setting(1.0 * DEG, unit="rad", gt=0)
-    hypotheses: int = setting(64, ge=4, le=1024)
+    hypotheses: int = setting(80, ge=4, le=1024)
     prune: float = setting(25.0, gt=0)
     sprout: float = setting(12.0, gt=0)
     merge: float = setting(0.4, ge=0)
 
     def __post_init__(self) -> None:
         require("hypotheses", self)
-        habits = {len(self.wander_m), len(self.wander_s), len(self.straight_curve)}
+        habits = {len(getattr(self, name)) for name in HABITS}
         if len(habits) > 1 or 0 in habits:
-            raise InputError(
-                "wander_m, wander_s and straight_curve: expected as many of each, one a habit", "hypotheses"
-            )
+            raise InputError(f"{', '.join(HABITS)}: expected as many of each, one a habit", "hypotheses")
         least = 4 * len(self.wander_m) * len(self.scales)
         if least > self.hypotheses:
             raise InputError(
@@ -111,6 +121,7 @@ class HypothesesParams:
     def constants(self) -> Constants:
         """The same as the kernels take it."""
         own: dict[str, Any] = {item.name: getattr(self, item.name) for item in fields(self)}
+        own["reference"] = math.nan if self.reference is None else self.reference
         for name, value in own.items():
             own[name] = np.array(value, dtype=float) if isinstance(value, tuple) else float(value)
         own["hypotheses"] = self.hypotheses
@@ -119,14 +130,15 @@ class HypothesesParams:
 
     def _transitions(self) -> np.ndarray:
         """Logarithms of chances (habits, 2, 3, 3): mode to mode, second after strides of no direction."""
-        return np.log(np.array([self._chances(curve) for curve in self.straight_curve]))
+        ways = zip(self.straight_curve, self.straight_turn, self.turn_straight, strict=True)
+        return np.log(np.array([self._chances(*way) for way in ways]))
 
-    def _chances(self, straight_curve: float) -> np.ndarray:
+    def _chances(self, straight_curve: float, straight_turn: float, turn_straight: float) -> np.ndarray:
         table = np.array(
             [
-                [0.0, straight_curve, self.straight_turn],
+                [0.0, straight_curve, straight_turn],
                 [self.curve_straight, 0.0, self.curve_turn],
-                [self.turn_straight, self.turn_curve, 0.0],
+                [turn_straight, self.turn_curve, 0.0],
             ]
         )
         lost = table.copy()
@@ -162,19 +174,21 @@ class Constants(NamedTuple):
     gentle_chance: float
     bending: float
     straight_curve: np.ndarray
-    straight_turn: float
+    straight_turn: np.ndarray
     curve_straight: float
     curve_turn: float
     curve_curve: float
-    turn_straight: float
+    turn_straight: np.ndarray
     turn_curve: float
     straight_first: float
     habit_change: float
     turn_after_short: float
     shortest_m: float
     directions: float
+    reference: float
     along_first: float
     along: float
+    along_anew: float
     beside: float
     hypotheses: int
     prune: float
@@ -182,3 +196,7 @@ class Constants(NamedTuple):
     merge: float
     load_sd: np.ndarray
     log_transitions: np.ndarray
+
+    def beside_start(self, heading: float) -> Constants:
+        """The same for a walk that begins at this heading (rad), from which courses are told."""
+        return self._replace(reference=self.reference - heading)

@@ -134,18 +134,23 @@ def test_grades_say_from_which_uncorrected_error_on_hdr_pays(results):
 
 def test_the_arc_is_told_by_radius_theta_w_and_hand(results):
     def error(method, values, scenario, unit):
-        if method == "pdr":
+        if method in ("pdr", "hypotheses-smooth"):
             return 1.0
+        if method == "hypotheses":
+            return 1.0 + values[_arc_radius.RADIUS] / 100
         right = values[_arc_radius.HAND] < 0
         return values[_arc_radius.RADIUS] * values[_arc_radius.THETA] + 5.0 * right
 
-    alone, beside, hands = _arc_radius.sheets(results("arc-radius", error))
+    alone, beside, hands, own = _arc_radius.sheets(results("arc-radius", error))
     assert alone.rows[0] == ["10", "7.45", "2.0 / 2.0", "7.5 / 12.5", "10.0 / 15.0", "15.0 / 20.0"]
     assert beside.rows[3][:4] == ["100", "2.0 / 2.0", "55.0 / 60.0", "100"]
     assert hands.rows == [
         ["left", *(figure(r / 2) for r in (10, 30, 60, 100, 150, 225, 300, 450, 1000))],
         ["right", *(figure(r / 2 + 10) for r in (10, 30, 60, 100, 150, 225, 300, 450, 1000))],
     ]
+    assert own.headings[1:5] == ["perfect: hypotheses", "worse (%)", "smoothed", "worse (%)"]
+    assert own.rows[0][1:5] == ["2.2 / 2.2", "0", "2.0 / 2.0", "0"]
+    assert own.rows[3][1:5] == ["4.0 / 4.0", "100", "2.0 / 2.0", "0"]
 
 
 def test_mounts_are_compared_unit_by_unit(results):

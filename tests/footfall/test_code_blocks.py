@@ -233,6 +233,9 @@ def perform(words, monkeypatch):
     """What a reader would type: run where it takes no walk, else parsed."""
     program, *rest = words
     if program == "footfall":
+        while rest[0].startswith("-") and rest != ["--help"]:  # options of all commands
+            assert rest[0] in ("-v", "--log"), rest[0]
+            rest = rest[1 if rest[0] == "-v" else 2 :]
         understand(parse_footfall(rest))
         if rest[0] in RUN and all(Path(word).is_file() for word in inputs_of(rest)):
             assert main(rest) == 0, rest

@@ -13,7 +13,7 @@ from footfall.hdr.hypotheses.track import UNITS, hypotheses_track
 from footfall.hdr.methods import METHODS
 from tests.helpers.drifting_feet import DEG, drift_of, feet, turned, without
 
-FEW = HypothesesParams(hypotheses=24)
+FEW = HypothesesParams(hypotheses=32)
 BLOCK = np.concatenate([np.zeros(80), [90 * DEG], np.zeros(80), [-90 * DEG], np.zeros(80)])
 BOTH = pytest.mark.parametrize("method", [beliefs, smoothed], ids=["causal", "smoothed"])
 
@@ -44,12 +44,13 @@ def error(footfalls, found, drift):
     return found.heading - footfalls.heading + drift_of(footfalls, drift)
 
 
-def test_footfall_by_footfall_it_gives_the_numbers_of_the_whole():
-    walked = varied()
+@pytest.mark.parametrize("reference", [None, 100 * DEG], ids=["learned", "known"])
+def test_footfall_by_footfall_it_gives_the_numbers_of_the_whole(reference):
+    walked, params = turned(varied(), 2.0), replace(FEW, reference=reference)
     numbers, loads = given(walked)
-    one = Hypotheses(FEW)
+    one = Hypotheses(params)
     found = [one.update(Given(*row, load)) for row, load in zip(numbers, loads, strict=True)]
-    for name, values in beliefs(walked, FEW)._asdict().items():
+    for name, values in beliefs(walked, params)._asdict().items():
         told = np.array([getattr(each, name) for each in found])
         np.testing.assert_allclose(told, values, rtol=0, atol=1e-9, err_msg=name)
 
@@ -102,6 +103,41 @@ def test_the_start_heading_turns_all_and_changes_nothing(method):
 
 
 @BOTH
+def test_a_known_direction_tells_the_drift_from_the_first_street_on(method):
+    """Half a street: where its direction is learned, where it began and how fast it drifts stay mixed."""
+    drift, building = 0.3 * DEG, 30 * DEG
+    walked = turned(feet(np.zeros(16), drift), building + 90 * DEG)
+    known = HypothesesParams(reference=building, bias=0.3 * DEG, along_first=0.9, beside=0.3 * DEG)
+    off = [
+        np.abs(error(walked, method(walked, params), drift)).mean()
+        for params in (known, replace(known, reference=None))
+    ]
+    assert off[0] < 0.7 * off[1]
+
+
+def test_hindsight_knows_the_direction_too():
+    """After few strides, of which one sequence tells, the end is the same with hindsight and without."""
+    walked = turned(feet(np.zeros(6), 0.3 * DEG), 120 * DEG)
+    params = HypothesesParams(
+        reference=30 * DEG,
+        bias=0.3 * DEG,
+        along_first=0.99,
+        beside=0.1 * DEG,
+        straight_first=0.999,
+        scales=(1.0,),
+    )
+    ends = [method(walked, params).heading[-1] for method in (beliefs, smoothed)]
+    assert ends[0] == pytest.approx(ends[1], abs=0.2 * DEG)
+
+
+@BOTH
+def test_a_known_direction_of_another_building_costs_little(method):
+    walked = feet(BLOCK, 0.05 * DEG)
+    wrong = HypothesesParams(reference=35 * DEG)
+    assert np.abs(error(walked, method(walked, wrong), 0.05 * DEG))[20:].mean() < 1.5 * DEG
+
+
+@BOTH
 def test_left_is_as_right(method):
     walked = varied()
     left, right = method(walked, FEW), method(turned(walked, 0.0, mirror=True), FEW)
@@ -115,7 +151,7 @@ def test_a_constant_bias_changes_nothing_on_a_straight(method):
     found = [method(feet(np.zeros(400), drift)).heading for drift in (0.0, 0.06 * DEG)]
     drift = drift_of(feet(np.zeros(400)), 0.06 * DEG)
     assert drift[-1] > 25 * DEG
-    assert np.abs(found[1] - found[0])[-50:].max() < 1 * DEG
+    assert np.abs(found[1] - found[0])[-50:].max() < 1.2 * DEG
 
 
 def test_a_slower_clock_is_the_same_walk():
@@ -138,7 +174,7 @@ def test_a_slower_clock_is_the_same_walk():
         flicker_s=FEW.flicker_s * 2,
         warmth=FEW.warmth / 2,
         wander_s=tuple(2 * value for value in FEW.wander_s),
-        hypotheses=24,
+        hypotheses=32,
     )
     np.testing.assert_allclose(beliefs(slow, half).heading, beliefs(walked, FEW).heading, atol=1e-9)
     np.testing.assert_allclose(smoothed(slow, half).heading_sd, smoothed(walked, FEW).heading_sd, atol=1e-9)
@@ -219,7 +255,8 @@ def test_on_a_straight_known_to_be_one_the_rate_is_that_of_least_squares():
         straight_curve=(1e-12,),
         place_m=1e-9,
         meander=0.0,
-        straight_turn=1e-12,
+        straight_turn=(1e-12,),
+        turn_straight=(0.6,),
         straight_first=1 - 1e-9,
     )
     found = beliefs(walked, only)
@@ -233,7 +270,7 @@ def test_on_a_straight_known_to_be_one_the_rate_is_that_of_least_squares():
 def test_what_is_undecided_is_told():
     """A bend as slow as a drift may be either: two headings, both with weight, and an SD that spans them."""
     found = beliefs(feet(np.concatenate([np.zeros(40), np.full(120, 0.12 * DEG)]), 0.02 * DEG))
-    assert 0.1 < found.second_weight[-1] < 0.6
+    assert 0.1 < found.second_weight[-1] < 0.9
     assert 0.1 < found.curve[-1] < 0.7
     assert abs(found.second_heading[-1] - found.heading[-1]) > 5 * DEG
     assert found.heading_sd[-1] > 5 * DEG > 3 * found.heading_sd[40]
@@ -278,7 +315,7 @@ def test_the_track_is_turned_and_tells_its_evidence():
     [
         ({"wander_m": (0.1,)}, "expected as many of each"),
         ({"scales": ()}, "scales: expected at least one"),
-        ({"hypotheses": 16}, "expected 24 or more, four for each habit and scale"),
+        ({"hypotheses": 16}, "expected 32 or more, four for each habit and scale"),
         ({"turn": -1.0}, "turn = -1.0 rad, expected a positive number"),
     ],
 )
@@ -297,3 +334,27 @@ def test_bad_footfalls_are_refused():
     walked = feet(np.zeros(5))
     with pytest.raises(InputError, match="not positive"):
         beliefs(replace(walked, interval=0 * walked.interval))
+
+
+def two_buildings(off):
+    """Turns of corridors at right angles, and of as many that lie `off` (rad) beside them."""
+    rng = np.random.default_rng(3)
+    legs = [np.zeros(9) for _ in range(28)]
+    for leg in legs:
+        leg[0] = rng.choice([-1.0, 1.0]) * 90 * DEG
+    legs[14][0] += off
+    return np.concatenate([np.zeros(8), *legs])
+
+
+@BOTH
+def test_where_directions_change_new_ones_are_learned(method):
+    drift = 0.04 * DEG
+    walked = feet(two_buildings(12 * DEG), drift)
+    off = [error(walked, method(walked, HypothesesParams(along_anew=a)), drift)[-60:] for a in (0.4, 1e-9)]
+    assert np.abs(off[0]).mean() < 1.5 * DEG
+    assert np.abs(off[0]).mean() < np.abs(off[1]).mean()
+
+
+def test_habits_are_lists_of_one_length():
+    with pytest.raises(InputError, match="wander_m, wander_s, straight_curve, straight_turn, turn_straight"):
+        HypothesesParams(straight_turn=(0.01,))

@@ -1,15 +1,17 @@
 """The compiled beam and smoother against the same in matrices."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from footfall.hdr.hypotheses import _beam, _plain, _smooth
 from footfall.hdr.hypotheses._linear import (
     ALIGNED,
+    ANEW,
     CURVE,
     DRIFT,
     GENTLE,
-    PATH,
     REFERENCE,
     STATES,
     STAYS,
@@ -20,6 +22,7 @@ from footfall.hdr.hypotheses._sight import COURSE, DISTANCE, JUMP, LOAD, REST, R
 from footfall.hdr.hypotheses.filter import rows_of
 from footfall.hdr.hypotheses.params import HypothesesParams
 from tests.hdr.test_hypotheses import varied
+from tests.helpers.drifting_feet import DEG
 
 PARAMS = HypothesesParams(hypotheses=32)
 
@@ -37,8 +40,9 @@ def test_the_rows_hold_everything_that_there_is(rows):
     assert (rows[-1, LOAD:JUMP] != 0).sum() >= 2
 
 
-def test_the_beam_equals_its_twin(rows):
-    c = PARAMS.constants
+@pytest.mark.parametrize("reference", [None, 100 * DEG], ids=["learned", "known"])
+def test_the_beam_equals_its_twin(rows, reference):
+    c = replace(PARAMS, reference=reference).constants
     told, history, _ = _beam.beam(rows, c, True)
     twin = _plain.PlainBeam(c)
     for i in range(1, len(rows)):
@@ -57,8 +61,9 @@ def test_the_smoother_equals_rauch_tung_striebel(rows):
     modes, entries, habits = np.zeros(n, dtype=int), np.zeros(n, dtype=int), np.zeros(n, dtype=int)
     modes[20:22], modes[45:70], entries[45], habits[22:] = TURN, CURVE, GENTLE, 2
     modes[10:15] = CURVE
-    entries[22] = entries[70] = ALIGNED
-    drift, variance = _smooth.smooth(rows, c, modes, habits, entries, c.scales[0], CURVE, 1)
+    entries[22], entries[70], entries[76] = ALIGNED, ALIGNED, ANEW
+    modes[75], entries[80] = TURN, ALIGNED
+    drift, variance = _smooth.smooth(rows, c, modes, habits, entries, c.scales[0], CURVE, 1, False)
 
     before = _plain.first(c, rows[1, COURSE])
     start = next(o for o in before if (o.mode, o.habit, o.scale) == (CURVE, 1, 0))
@@ -79,14 +84,16 @@ def test_the_smoother_equals_rauch_tung_striebel(rows):
             length = 0.5 * (rows[i, DISTANCE] + (last or rows[i, DISTANCE]))
             G, R = _plain.mode_model(modes[i], entries[i], habits[i], length, c)
             last = rows[i, DISTANCE]
-        steps.append((mean, cov, G, G @ mean, G @ cov @ G.T + R))
+        moved = G @ mean
+        if entries[i] == ANEW:
+            moved[REFERENCE] -= _plain.quarter_turns(mean, c)
+        steps.append((mean, cov, G, moved, G @ cov @ G.T + R))
         mean, cov = steps[-1][3:]
         if good:
             seen = _plain.course_seen(rows[i])
             mean, cov, _ = _plain.updated(mean, cov, _plain.course_row(rows[i]), seen, c.course**2)
         if entries[i] == ALIGNED:
-            sector = 2 * np.pi / c.directions
-            along = sector * np.round((mean[PATH] - mean[REFERENCE]) / sector)
+            along = _plain.quarter_turns(mean, c)
             mean, cov, _ = _plain.updated(mean, cov, _plain.along_row(), along, c.beside**2)
     found = [(mean[DRIFT], cov[DRIFT, DRIFT])]
     for k in range(len(steps) - 1, 0, -1):
