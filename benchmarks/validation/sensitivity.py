@@ -2,7 +2,8 @@
 
 First Ishigami's function and Sobol's g, whose indices are known: how many of them lie inside their intervals,
 over seeds. Then four sheets far from the nIMU's, units by the drift budget and recorded in full, uncorrected
-and with HDR: means over the units, and how far single units are off.
+and with HDR: means over the units, how far single units are off, and whether a study that reaches to that
+sheet would refuse the budget.
 
 python -m benchmarks.validation.sensitivity
 """
@@ -15,9 +16,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks._common import options, out, write_json
+from footfall.errors import InputError
 from footfall.scenarios.parameters import documents
 from footfall.scenarios.report.tables import new_table
 from footfall.scenarios.studies.budget import METRICS
+from footfall.scenarios.studies.check import Check
 from footfall.scenarios.studies.indices import sobol_until
 from footfall.scenarios.studies.listening import Heard, listened
 from footfall.scenarios.studies.points import Worn, evaluate_points
@@ -86,6 +89,18 @@ def inside(
     return {"indices": count, "inside": hits, "widest": widest, "furthest": furthest}
 
 
+END = np.array([[0.5], [0.0]])  # shares of a range: inside, where nothing is off, and its end
+
+
+def refused(check: Check) -> bool:
+    """Whether a study with this check would end."""
+    try:
+        check.require()
+    except InputError:
+        return True
+    return False
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print both tables."""
     parser = options(__doc__)
@@ -106,7 +121,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     full = evaluate_points(
         base, list(SHEETS.values()), worn.deal, METRICS[0], workers=chosen.processes
     ).errors
-    table = new_table("sheet", "method", "full", "budget", "off", "units off", left=2)
+    table = new_table("sheet", "method", "full", "budget", "off", "units off", "a study", left=2)
     for i, method in enumerate(setup.methods):
         for k, (name, values) in enumerate(SHEETS.items()):
             model = Heard(heard, setup.spec, method, list(values), METRICS[0])
@@ -114,9 +129,17 @@ def main(arguments: Sequence[str] | None = None) -> None:
             own = full[i, k]
             off = 100 * (made.mean() / own.mean() - 1)
             each = float(np.median(np.abs(made - own)))
+            ends = Check(method.name, END, np.array([1.0, own.mean()]), np.array([1.0, made.mean()]))
+            told = "refused" if refused(ends) else "within"
             figures[f"{method.name}, {name}"] = {"full": own.tolist(), "budget": made.tolist()}
             table.add_row(
-                name, method.name, f"{own.mean():.1f}", f"{made.mean():.1f}", f"{off:+.0f} %", f"{each:.1f}"
+                name,
+                method.name,
+                f"{own.mean():.1f}",
+                f"{made.mean():.1f}",
+                f"{off:+.0f} %",
+                f"{each:.1f}",
+                told,
             )
     out.print(table)
     write_json(chosen.json, figures)

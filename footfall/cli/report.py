@@ -11,7 +11,9 @@ from footfall.cli.terminal import say
 
 
 def report(
-    folder: Annotated[Path, typer.Argument(help="What `footfall run`, `sweep` or `gate` wrote.")],
+    folder: Annotated[
+        Path, typer.Argument(help="What `footfall run`, `sweep`, `gate` or `sensitivity` wrote.")
+    ],
 ) -> None:
     """Write the report.html of a folder of results again, from its files.
 

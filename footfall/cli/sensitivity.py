@@ -37,7 +37,8 @@ def sensitivity(
 ) -> None:
     """Find the parameters that a method's error depends on, alone and together (Morris, Sobol).
 
-    The results are sensitivity.json, points.parquet and the figures (PNG). Needs footfall\\[study].
+    The results are report.html, sensitivity.json, points.parquet and the figures (PNG). Needs
+    footfall\\[study].
     """
     from footfall.scenarios.report.progress import watching
     from footfall.scenarios.report.results import results_folder

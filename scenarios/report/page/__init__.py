@@ -23,7 +23,7 @@ Maker = Callable[[Path, Mapping[str, Any]], "Page"]
 
 
 def write_page(folder: str | os.PathLike[str]) -> Path:
-    """Write `report.html` into a folder, from the results of a run, a sweep or a gate that it holds.
+    """Write `report.html` into a folder, from the results of a run, a sweep, a gate or a sensitivity study.
 
     Returns
     -------
@@ -84,8 +84,15 @@ def _of_gate() -> Maker:
     return gate_page
 
 
+def _of_sensitivity() -> Maker:
+    from footfall.scenarios.report.page.sensitivity import sensitivity_page
+
+    return sensitivity_page
+
+
 _KINDS: dict[str, Callable[[], Maker]] = {
     "scores.json": _of_run,
     "study.json": _of_sweep,
     "gate.json": _of_gate,
+    "sensitivity.json": _of_sensitivity,
 }

@@ -14,6 +14,7 @@ from footfall.scenarios.studies import sensitivity as studied
 from footfall.scenarios.studies.check import Check
 from footfall.scenarios.studies.sensitivity import Watch, perform_study
 from footfall.scenarios.studies.sensitivity_file import build_study, read_study, stock_studies
+from tests.helpers.pages import Page
 
 G = "imu.gyro.g_sensitivity_sigma_deg_s_g"
 STUDY = f"""
@@ -25,7 +26,7 @@ fidelity = "budget"
 walks = 1
 units = 3
 [parameters]
-"{G}" = {{ from = 0.015, to = 0.45, scale = "log", label = "g-sensitivity" }}
+"{G}" = {{ from = 0.06, to = 0.3, scale = "log", label = "g-sensitivity" }}
 "hdr.theta_w_deg_s" = {{ from = 0.2, to = 1.0 }}
 [morris]
 trajectories = 4
@@ -55,17 +56,25 @@ def test_a_study_from_its_file_to_its_folder(file, cli, here):
     assert found == json.loads((here / "out/costs/sensitivity.json").read_text())
     assert (found["name"], found["scenario"], list(found["methods"])) == ("costs", "short", ["hdr"])
     assert found["parameters"][G] == {
-        "label": "g-sensitivity", "unit": "deg/s/g", "from": 0.015, "to": 0.45, "scale": "log"
+        "label": "g-sensitivity", "unit": "deg/s/g", "from": 0.06, "to": 0.3, "scale": "log"
     }  # fmt: skip
     assert found["cases"] == [[3, unit, unit] for unit in (1000, 1001, 1002)]
     own = found["methods"]["hdr"]
     assert set(own["morris"]) == {G, "hdr.theta_w_deg_s"}
     assert [step["samples"] for step in own["sobol"]["steps"]] == [16, 32]
-    assert len(own["check"]["full"]) == 8
+    assert len(own["check"]["full"]) == 10
     assert "hdr: the budget beside the full chain" in told
     points = pq.read_table(here / "out/costs/points.parquet").to_pydict()
     assert points["design"] == ["morris"] * 12 + ["sobol"] * 128
-    assert min(points[G]) >= 0.015
+    assert min(points[G]) >= 0.06
+    page = Page(here / "out/costs/report.html")
+    (chart,) = page.charts("method-0")
+    own = own["sobol"]["steps"][-1]["parameters"]
+    ranked = sorted(own, key=lambda name: -own[name]["total"]["value"])
+    labels = [found["parameters"][name].get("label") or name for name in ranked]
+    assert [label for _, label in chart["x"]["ticks"]] == labels
+    _, drawn, _ = page.trace("method-0", "total")
+    np.testing.assert_allclose(drawn, [own[name]["total"]["value"] for name in ranked], rtol=1e-6)
     for name in ("indices.png", "effects.png"):
         assert (here / "out/costs" / name).read_bytes()[:4] == b"\x89PNG"
 
@@ -127,7 +136,7 @@ def test_the_unit_as_a_factor(file):
     study = read_study(str(file), {"units_as_factor": True, "morris": None})
     assert study.factors[-1].values == (1000, 1001, 1002)
     found = perform_study(study, Watch(workers=1))
-    assert found.answers[0].check.shares.shape == (8, 2)  # over all units
+    assert found.answers[0].check.shares.shape == (10, 2)  # over all units
     rows = list(found.rows())
     assert {row["unit"] for row in rows} == {1000, 1001, 1002}
     assert len(found.answers[0].sobol.total) == 3
@@ -145,12 +154,30 @@ def test_a_budget_that_is_too_far_off_is_refused_after_it_was_shown(file, monkey
 
 
 def test_the_check_is_of_sizes():
-    check = Check("hdr", np.zeros((2, 1)), np.array([2.0, 4.0]), np.array([2.4, 3.2]))
+    inside = np.full((2, 1), 0.5)
+    check = Check("hdr", inside, np.array([2.0, 4.0]), np.array([2.4, 3.2]))
     np.testing.assert_allclose(check.off, [0.2, -0.2])
     assert check.mean_off == pytest.approx(0.2)
     with pytest.raises(InputError, match="20 %"):
         check.require()
-    Check("hdr", np.zeros((2, 1)), np.array([2.0, 4.0]), np.array([2.2, 3.6])).require()
+    Check("hdr", inside, np.array([2.0, 4.0]), np.array([2.2, 3.6])).require()
+
+
+@pytest.mark.parametrize(("at", "name"), [(0.0, "all low"), (1.0, "all high")])
+def test_one_end_that_is_too_far_off_is_enough(at, name):
+    """However near all others are; where two ranges meet at their ends, and not where one does."""
+    shares = np.array([[0.5, 0.5], [0.3, 0.2], [at, at]])
+    full = np.array([10.0, 10.0, 4.17])
+    check = Check("hdr", shares, full, np.array([10.0, 10.0, 6.04]))
+    assert check.mean_off == 0
+    with pytest.raises(
+        InputError, match=rf"of hdr by \+45 % \(6\.04 for 4\.17\) with {name} of the ranges, more than 15 %"
+    ):
+        check.require()
+    Check("hdr", shares, full, np.array([10.0, 10.0, 4.17 * 0.86])).require()
+    with pytest.raises(InputError, match="-16 %"):
+        Check("hdr", shares, full, np.array([10.0, 10.0, 4.17 * 0.84])).require()
+    Check("hdr", np.array([[0.5, 0.5], [at, 0.2]]), full[:2], np.array([10.0, 12.0])).require()
 
 
 @pytest.mark.parametrize(
