@@ -13,15 +13,16 @@ import numpy as np
 from footfall.columns import ACCEL, GYRO, POSITION, QUATERNION, RECORDING
 from footfall.errors import InputError
 from footfall.identity import content_digest
+from footfall.shown import Shown, draw_triads
 from footfall.tables import column_names, read_table, require_columns, write_table
 
 
 @dataclass(frozen=True)
-class Recording:
+class Recording(Shown):
     """IMU samples in the body frame (x forward, y left, z up when level).
 
-    Its arrays cannot be written into: what one method gets, the next one gets. Change a copy (scipy's
-    `Rotation.apply` wants one too).
+    Its arrays are read-only, because the next method gets them too. Change a copy (scipy's `Rotation.apply`
+    needs one too).
 
     Attributes
     ----------
@@ -82,15 +83,24 @@ class Recording:
         """Median sampling interval (s)."""
         return float(np.median(np.diff(self.t)))
 
+    def _columns(self) -> dict[str, np.ndarray]:
+        columns = {"t": self.t}
+        columns |= {name: self.gyro[:, i] for i, name in enumerate(GYRO)}
+        columns |= {name: self.accel[:, i] for i, name in enumerate(ACCEL)}
+        return columns if self.temperature is None else columns | {"temperature": self.temperature}
+
+    def _units(self) -> Mapping[str, str]:
+        return RECORDING
+
+    def _draw(self) -> np.ndarray:
+        return draw_triads(
+            self.t, self.gyro, self.accel, f"{len(self.t):,} samples at {1 / self.interval:.0f} Hz"
+        )
+
 
 def write_recording(recording: Recording, path: str | os.PathLike[str]) -> None:
     """Write `recording` to Parquet: t, gyro_x..z, accel_x..z, and temperature where there is one."""
-    columns = {"t": recording.t}
-    columns |= {name: recording.gyro[:, i] for i, name in enumerate(GYRO)}
-    columns |= {name: recording.accel[:, i] for i, name in enumerate(ACCEL)}
-    if recording.temperature is not None:
-        columns["temperature"] = recording.temperature
-    write_table(path, columns, RECORDING, recording.meta)
+    write_table(path, recording._columns(), RECORDING, recording.meta)
 
 
 def is_truth(names: Iterable[str]) -> bool:

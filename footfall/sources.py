@@ -30,6 +30,7 @@ NO_PART = frozenset(
         "footfall.errors",
         "footfall.late",
         "footfall.models.appearance",
+        "footfall.shown",
         "footfall.sources",
         "footfall.tables",
     }

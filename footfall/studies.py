@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from footfall.scenarios.studies.plan import plan_of
     from footfall.scenarios.studies.sensitivity import sensitivity
     from footfall.scenarios.studies.study import Study, stock_studies
-    from footfall.scenarios.studies.sweep import Progress, StoppedError, sweep
+    from footfall.scenarios.studies.sweep import Progress, sweep
+    from footfall.scenarios.studies.task import StoppedError
     from footfall.scenarios.studies.tuning import tuned
 
 __all__ = [
@@ -42,7 +43,7 @@ _HOMES = {
     "ErrorMap": "studies.map",
     "Judged": "studies.gate",
     "Progress": "studies.sweep",
-    "StoppedError": "studies.sweep",
+    "StoppedError": "studies.task",
     "Study": "studies.study",
     "Verdict": "judge.verdict",
     "documents": "parameters",

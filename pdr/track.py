@@ -11,12 +11,13 @@ import numpy as np
 
 from footfall.columns import TRACK
 from footfall.errors import InputError
+from footfall.shown import Shown, draw_way
 from footfall.tables import read_table, require_columns, write_table
 
 
 @dataclass(frozen=True)
-class Track:
-    """Where a method says that the foot was.
+class Track(Shown):
+    """The estimated positions and headings of the foot, by one method.
 
     Attributes
     ----------
@@ -38,12 +39,28 @@ class Track:
     def __len__(self) -> int:
         return len(self.t)
 
+    def _columns(self) -> dict[str, np.ndarray]:
+        columns = {"t": self.t} | {axis: self.position[:, i] for i, axis in enumerate("xyz")}
+        return columns | {"heading": self.heading, **self.evidence}
+
+    def _units(self) -> Mapping[str, str]:
+        return {**TRACK, **self.units}
+
+    def _draw(self) -> np.ndarray:
+        from matplotlib import pyplot
+
+        _, axes = pyplot.subplots(1, 2, figsize=(8, 3.8), width_ratios=(1.3, 1))
+        draw_way(axes[0], self.position[:, 0], self.position[:, 1])
+        axes[0].set_title(f"{len(self)} footfalls")
+        axes[1].plot(self.t, np.degrees(self.heading))
+        axes[1].set_xlabel("time (s)")
+        axes[1].set_ylabel("heading (deg)")
+        return np.asarray(axes)
+
 
 def write_track(track: Track, path: str | os.PathLike[str]) -> None:
     """Write `track` to Parquet: t, x, y, z, heading and the evidence."""
-    columns = {"t": track.t} | {axis: track.position[:, i] for i, axis in enumerate("xyz")}
-    columns |= {"heading": track.heading, **track.evidence}
-    write_table(path, columns, {**TRACK, **track.units}, track.meta)
+    write_table(path, track._columns(), track._units(), track.meta)
 
 
 def read_track(path: str | os.PathLike[str]) -> Track:

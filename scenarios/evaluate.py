@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -13,18 +14,27 @@ import numpy as np
 from footfall.hdr.method import Method
 from footfall.pdr.track import Track
 from footfall.scenarios.execute import Progress, execute
+from footfall.scenarios.judge.gate import unit_of
 from footfall.scenarios.parameters import documents, with_values
 from footfall.scenarios.report.progress import showing
+from footfall.scenarios.report.style import colours_of, label_of
 from footfall.scenarios.run import OTHER_UNITS_FROM
+from footfall.scenarios.studies.rows import SCORES
 from footfall.scenarios.trial import Row, Setup, Trial
+from footfall.shown import Shown, table_html
 
 AnyMethod = str | Method | Callable[..., Track]
+
+_HEADINGS = {
+    "heading_error_mean_deg": "mean heading error",
+    "heading_error_final_deg": "final heading error",
+}
 
 NOISE_STEP = 100_000  # between the seeds of one unit's noises: more than there are units
 
 
 @dataclass(frozen=True)
-class Rows(Sequence[Row]):
+class Rows(Shown, Sequence[Row]):
     """Rows of scores, one a trial and method."""
 
     rows: tuple[Row, ...]
@@ -55,11 +65,50 @@ class Rows(Sequence[Row]):
         """(n,) of one score, by its name in `Score`; NaN where there is none."""
         return np.array([np.nan if row.score is None else getattr(row.score, score) for row in self.rows])
 
-    def to_pandas(self) -> Any:
-        """A pandas DataFrame, one row each; needs pandas."""
-        import pandas
+    def _columns(self) -> dict[str, list[Any]]:
+        told = [row.as_dict() for row in self.rows]
+        return {name: [row[name] for row in told] for name in (told[0] if told else ())}
 
-        return pandas.DataFrame([row.as_dict() for row in self.rows])
+    def _units(self) -> Mapping[str, str]:
+        return {name: unit_of(name) for name in SCORES}
+
+    def _repr_html_(self) -> str:
+        columns = {name: list(values) for name, values in self._summary().items()}
+        return table_html(f"Rows ({len(self.rows):,}) by method, in deg", columns, {})
+
+    def _summary(self) -> dict[str, list[Any]]:
+        """By method: trials, failures, median and 90th percentile of the heading errors."""
+        told: list[dict[str, Any]] = []
+        for method in dict.fromkeys(row.method for row in self.rows):
+            mine = self.of(method)
+            told.append({"method": method, "trials": len(mine), "failed": len(mine.failures)})
+            for name, words in _HEADINGS.items():
+                values = mine.values(name)
+                values = values[~np.isnan(values)]
+                told[-1][f"{words}, median"] = float(np.median(values)) if len(values) else math.nan
+                told[-1][f"{words}, p90"] = float(np.percentile(values, 90)) if len(values) else math.nan
+        return {name: [row[name] for row in told] for name in (told[0] if told else ())}
+
+    def _draw(self) -> np.ndarray:
+        from matplotlib import pyplot
+
+        methods = list(dict.fromkeys(row.method for row in self.rows))
+        colours, high = colours_of(methods), 0.35 * len(methods) + 1.2
+        _, axes = pyplot.subplots(1, 2, figsize=(8, high), sharey=True)
+        for axis, (name, words) in zip(axes, _HEADINGS.items(), strict=True):
+            for place, method in enumerate(methods):
+                values = self.of(method).values(name)
+                values = values[~np.isnan(values)]
+                spread = place + 0.18 * np.sin(2.4 * np.arange(len(values)))  # points apart, always alike
+                axis.plot(values, spread, "o", color=colours[method], ms=3.5, alpha=0.5, mew=0)
+                if len(values):
+                    axis.plot(np.median(values), place, "|", color="#222222", ms=18, mew=2)
+            axis.set_xlabel(f"{words} (deg)")
+            axis.set_xlim(left=0)
+        axes[0].set_yticks(range(len(methods)), [label_of(method) for method in methods])
+        axes[0].invert_yaxis()
+        axes[0].set_title("one point a trial; bars: medians")
+        return np.asarray(axes)
 
     def __str__(self) -> str:
         """Median and 90th percentile of the heading errors by method."""
@@ -136,11 +185,10 @@ def evaluate(
     ----------
     method : a function `(recording, start) -> Track`, a name, a `Method`, or several of these
     scenario : stock name or TOML file
-    units : individual IMUs, dealt to the walks
+    units : number of individual IMUs, spread over the walks
     walks, seed, imu : the scenario's own when None
     values : address -> value (`footfall parameters`), as `--set` takes them
-    workers : processes, one a core when None; what cannot travel to another (`travelling`) is called in this
-        one
+    workers : processes, one a core when None; a method that cannot be pickled (`travelling`) runs in this one
     on_progress : as of `execute`; bars on a terminal when None
 
     Returns

@@ -14,7 +14,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from footfall.errors import InputError
 from footfall.models.policy import stock_policy
@@ -24,6 +24,8 @@ from footfall.simulate.walk import Walk
 
 # What numerical libraries read their number of threads from.
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+T = TypeVar("T")
 
 CHUNK = 10  # trials that a worker does in one go, with one walk in memory
 
@@ -50,7 +52,7 @@ class Progress:
 
 
 @dataclass(frozen=True)
-class _Group:
+class Group:
     """Trials that share a walk, and which of all they are."""
 
     trials: list[Trial] = field(default_factory=list)
@@ -91,16 +93,7 @@ def execute(
     store : folder of footfalls, for methods that need no samples (`footfall.scenarios.store`)
     on_progress : called about five times a second
     """
-    groups: dict[str, _Group] = {}
-    policy, keys = stock_policy(), {}
-    for index, trial in enumerate(trials):
-        # Plans are big: each is hashed once, not once a trial.
-        short = (id(trial.setup.scenario), trial.number, trial.walk_seed)
-        if short not in keys:
-            keys[short] = plan_key(trial.plan, policy)
-        group = groups.setdefault(keys[short], _Group())
-        group.trials.append(trial)
-        group.index.append(index)
+    groups = grouped(trials)
     work = list(groups.values())
     progress = Progress(tuple(group.trials[0] for group in work), [0.0] * len(work), len(trials))
     with ExitStack() as stack:
@@ -109,7 +102,22 @@ def execute(
         to_walk = not all(is_cached(key, folder) for key in groups)
         run = _here if workers <= 1 else partial(_spread, workers=workers, to_walk=to_walk)
         report = on_progress or (lambda now: None)
-        yield from _in_order(run(work, _Places(folder, store), frozenset(keep), progress, report))
+        yield from in_order(run(work, _Places(folder, store), frozenset(keep), progress, report))
+
+
+def grouped(trials: Sequence[Trial]) -> dict[str, Group]:
+    """Key of a walk (`plan_key`) -> the trials on it."""
+    groups: dict[str, Group] = {}
+    policy, keys = stock_policy(), {}
+    for index, trial in enumerate(trials):
+        # Plans are big: each is hashed once, not once a trial.
+        short = (id(trial.setup.scenario), trial.number, trial.walk_seed)
+        if short not in keys:
+            keys[short] = plan_key(trial.plan, policy)
+        group = groups.setdefault(keys[short], Group())
+        group.trials.append(trial)
+        group.index.append(index)
+    return groups
 
 
 def warm(trial: Trial, *, walks: bool) -> None:
@@ -119,9 +127,9 @@ def warm(trial: Trial, *, walks: bool) -> None:
     compiling.warm(trial, walks=walks)
 
 
-def _in_order(found: Iterator[tuple[int, Outcome]]) -> Iterator[Outcome]:
-    """Outcomes by index, as soon as those before are there."""
-    waiting: dict[int, Outcome] = {}
+def in_order(found: Iterator[tuple[int, T]]) -> Iterator[T]:
+    """What is found by index, as soon as what is before it is there."""
+    waiting: dict[int, T] = {}
     following = 0
     for index, outcome in found:
         waiting[index] = outcome
@@ -131,7 +139,7 @@ def _in_order(found: Iterator[tuple[int, Outcome]]) -> Iterator[Outcome]:
 
 
 def _here(
-    work: Sequence[_Group],
+    work: Sequence[Group],
     places: _Places,
     keep: frozenset[int],
     progress: Progress,
@@ -154,7 +162,7 @@ def _here(
 
 
 def _spread(
-    work: Sequence[_Group],
+    work: Sequence[Group],
     places: _Places,
     keep: frozenset[int],
     progress: Progress,
@@ -185,7 +193,7 @@ def _spread(
                         lost = zip(work[at].index, work[at].trials, strict=True)
                         ready += [(index, failed(trial, refused)) for index, trial in lost]
                         continue
-                    for part in _chunks(work[at]):
+                    for part in chunks(work[at]):
                         kept = [index in keep for index in part.index]
                         trying.add(pool.submit(_chunk_job, part, kept, places))
                 else:
@@ -199,10 +207,11 @@ def _spread(
             yield from ready
 
 
-def _chunks(group: _Group) -> Iterator[_Group]:
+def chunks(group: Group) -> Iterator[Group]:
+    """Parts of a group that a worker does in one go."""
     for first in range(0, len(group.trials), CHUNK):
         part = slice(first, first + CHUNK)
-        yield _Group(group.trials[part], group.index[part])
+        yield Group(group.trials[part], group.index[part])
 
 
 def _walk(trial: Trial, folder: Path | None, report: Callable[[float], None] | None) -> Walk | InputError:
@@ -247,7 +256,7 @@ def hold(
 
 
 def _chunk_job(
-    part: _Group, keep: Sequence[bool], places: _Places
+    part: Group, keep: Sequence[bool], places: _Places
 ) -> list[tuple[int, tuple[Row, ...], Kept | None]]:
     """In a worker: trials on one walk. The trials themselves stay here: their scenarios are big."""
     walk = hold(part.trials[0], places.walks)

@@ -26,6 +26,7 @@ from footfall.models.subject import SHOES, SUBJECTS
 from footfall.pdr.detectors import DETECTORS, require_detector
 from footfall.pdr.filter.ins import FilterSettings
 from footfall.pdr.reckoning import PdrParams
+from footfall.scenarios.layouts import concerns
 from footfall.scenarios.scenario import (
     Scenario,
     ScenarioDocument,
@@ -337,7 +338,8 @@ def parameters(base: Documents) -> Iterator[Parameter]:
     for key in keys(ScenarioFile):
         address = f"scenario.{key.address}"
         table = _opened_subjects(base.scenario.table, key.address)
-        if address in _NO_PARAMETERS or not there(table, key.address):
+        told = there(table, key.address) and concerns(key.address, table.get("path"))
+        if address in _NO_PARAMETERS or not told:
             continue
         stage = next((stage for head, stage in _LATER.items() if address.startswith(head)), "walk")
         now = _now(table, key.address, key.default)

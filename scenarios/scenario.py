@@ -1,4 +1,4 @@
-"""A scenario: who walks where, how fast and how regularly, in what cold, with which sensor, how often."""
+"""A scenario: people, path, pace and regularity, temperatures, sensor, and number of walks."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path as File
 from typing import Annotated, Any
 
@@ -18,7 +17,9 @@ from footfall.errors import InputError
 from footfall.models.imu import TemperatureProfile, load_spec, stock_specs
 from footfall.models.mount import MOUNTS
 from footfall.models.subject import SHOES, SUBJECTS, Subject
-from footfall.scenarios.path import Path, PathSpec, build_path
+from footfall.scenarios.layouts import PathEntry, laid_out, shortest
+from footfall.scenarios.on_the_way import PaceTable, StopTable, paces_of, stops_of
+from footfall.scenarios.path import Path
 from footfall.scenarios.terrain import Terrain, build_terrain, require_one_height
 from footfall.settings import did_you_mean
 from footfall.simulate.plan import PHYSICS_STEP, Disturbance, Gait, Pace, Plan, Stop
@@ -85,20 +86,6 @@ class GaitTable(Strict):
 _IN_TURN = ("wander_m", "wander_time_s")  # what of the gait is used in turn from walk to walk
 
 
-class StopTable(Strict):
-    """A pause on the way."""
-
-    at_m: float = Field(gt=0)
-    for_s: float = Field(gt=0, le=3600)
-
-
-class PaceTable(Strict):
-    """A change of pace on the way."""
-
-    at_m: float = Field(gt=0)
-    m_s: float = Field(ge=0.7, le=1.7)
-
-
 class DisturbanceTable(Strict):
     """Pushes at the trunk: how well does the walker stand them?"""
 
@@ -155,7 +142,7 @@ class ScenarioFile(Strict):
 
     description: Annotated[str, Field(min_length=1)]
     subjects: Annotated[tuple[SubjectEntry, ...], Field(strict=False, min_length=1), BeforeValidator(listed)]
-    path: PathSpec
+    path: PathEntry
     gait: GaitTable
     stops: Annotated[tuple[StopTable, ...], Field(strict=False)] = ()
     paces: Annotated[tuple[PaceTable, ...], Field(strict=False)] = ()
@@ -198,7 +185,7 @@ class Scenario:
     ----------
     document : what it was built from
     file : its content, checked
-    path : where to walk
+    path : where to walk; of paths that seeds draw, that of the first walk
     subjects : used in turn from walk to walk
     stops, paces : pauses and changes of pace, in walking order
     temperatures : of the air around the sensor from the recording's start, used in turn from walk to walk
@@ -268,12 +255,13 @@ class Scenario:
         own = {key: getattr(self.gait, key)[walk % len(getattr(self.gait, key))] for key in _IN_TURN}
         return Gait(**(self.gait.model_dump() | own))
 
-    def plan(self, walk: int) -> Plan:
-        """What the simulator needs for walk number `walk` (from 0)."""
+    def plan(self, walk: int, seed: int | None = None) -> Plan:
+        """What the simulator needs for walk number `walk` (from 0); `seed` in place of the scenario's own."""
         pushes = self.file.disturbance
+        seed = self.seeds.base + walk if seed is None else seed
         return Plan(
             name=self.name,
-            route=self.path.route,
+            route=laid_out(self.file.path, seed).route,
             subject=self.subjects[walk % len(self.subjects)],
             mount=MOUNTS[self.sensor.mount],
             ground=self.terrain,
@@ -283,7 +271,7 @@ class Scenario:
             disturbance=None if pushes is None else Disturbance(**pushes.model_dump()),
             calibration_s=self.sensor.calibration_s,
             rate_hz=self.sensor.rate_hz,
-            seed=self.seeds.base + walk,
+            seed=seed,
         )
 
 
@@ -336,7 +324,7 @@ def build_scenario(document: ScenarioDocument) -> Scenario:
 
 
 def _built(document: ScenarioDocument, content: ScenarioFile) -> Scenario:
-    path, sensor = build_path(content.path), content.sensor
+    path, sensor = laid_out(content.path, content.seeds.base), content.sensor
     require_one_height(path)
     if sensor.mount not in MOUNTS:
         raise InputError(f"sensor.mount = {sensor.mount!r} is unknown{did_you_mean(sensor.mount, MOUNTS)}")
@@ -351,36 +339,11 @@ def _built(document: ScenarioDocument, content: ScenarioFile) -> Scenario:
         file=content,
         path=path,
         subjects=tuple(_subject(i, entry) for i, entry in enumerate(content.subjects)),
-        stops=_stops(content.stops, path.route.length),
-        paces=_paces(content.paces, path.route.length),
+        stops=stops_of(content.stops, shortest(content.path)),
+        paces=paces_of(content.paces, shortest(content.path)),
         temperatures=_temperatures(content.temperature),
         imu=imu,
     )
-
-
-def _stops(tables: tuple[StopTable, ...], length: float) -> tuple[Stop, ...]:
-    """In walking order; 3 m apart and from the ends, or there is no walking between them."""
-    at = [0.0, *(table.at_m for table in tables), length]
-    for i, (before, after) in enumerate(pairwise(at)):
-        if after - before < 3.0:
-            number, value = (i + 1, after) if i < len(tables) else (i, before)
-            raise InputError(
-                f"stops no. {number}, at_m = {value:g}: expected at least 3 m beyond the stop "
-                f"(or the start) before it and before the path's end at {length:g} m"
-            )
-    return tuple(Stop(**table.model_dump()) for table in tables)
-
-
-def _paces(tables: tuple[PaceTable, ...], length: float) -> tuple[Pace, ...]:
-    """In walking order, and on the path."""
-    at = [0.0, *(table.at_m for table in tables)]
-    for i, (before, after) in enumerate(pairwise(at)):
-        if not before < after < length:
-            raise InputError(
-                f"paces no. {i + 1}, at_m = {after:g}: expected beyond the change (or the start) "
-                f"before it at {before:g} m and before the path's end at {length:g} m"
-            )
-    return tuple(Pace(**table.model_dump()) for table in tables)
 
 
 def _temperatures(entry: TemperatureTable | tuple[TemperatureTable, ...]) -> tuple[TemperatureProfile, ...]:

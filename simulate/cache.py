@@ -103,6 +103,21 @@ def cached_walk(
     return replace(found, meta={**found.meta, "scenario": plan.name})
 
 
+def kept_walk(plan: Plan, folder: Path | None = None) -> Walk | None:
+    """A plan's walk where the cache has it whole; nothing is walked."""
+    found = _read(_file(plan_key(plan, stock_policy()), folder))
+    return None if found is None else replace(found, meta={**found.meta, "scenario": plan.name})
+
+
+def keep_walk(key: str, walk: Walk, folder: Path | None = None) -> None:
+    """Keep a walk that was walked elsewhere. A cache that cannot be written costs only that."""
+    path = _file(key, folder)
+    with suppress(OSError, InputError):
+        if not path.is_file():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_walk(walk, path)
+
+
 def cached_walks(folder: Path | None = None) -> list[CachedWalk]:
     """What is in the cache, the last used first."""
     files = (folder or cache_folder()).glob("*.parquet")

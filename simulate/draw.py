@@ -38,6 +38,7 @@ _PRINTS = 80
 _DASH_EVERY, _DASH_NEAR = 0.5, 12.0  # m
 _DASH_RGBA = (0.93, 0.60, 0.12, 1.0)
 _PRINT_RGBA = (0.36, 0.36, 0.36, 1.0)
+_IMU_RGBA = (1.0, 0.80, 0.0, 1.0)
 _FOOTFALL_RGBA = (0.10, 0.36, 0.66, 1.0)  # of the foot that wears the IMU
 _PATCH_M, _PATCH_CELL_M = 80.0, 1.0  # of the ground is drawn, each way; on a grid of at least this
 _ABOVE = 0.006  # m by which what lies on the ground is lifted from it
@@ -81,6 +82,7 @@ class Stage:
         self._dashes = None if plan is None else _dashes(plan.route)
         self._prints: deque[tuple[str, np.ndarray, np.ndarray]] = deque(maxlen=_PRINTS)
         imu = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, "imu")
+        self._imu = imu
         self._instrumented = "" if imu < 0 else model.body(model.site_bodyid[imu]).name[-1]
         self.update()
 
@@ -136,6 +138,8 @@ class Stage:
 
     def decorate(self, scene: Any) -> None:
         """Add the line and the prints to a MuJoCo scene."""
+        if self._imu >= 0:  # the box on the shoe is small: it is drawn larger
+            _add_box(scene, (0.034, 0.024, 0.016), self.data.site(self._imu), _IMU_RGBA)
         if self._dashes is not None:
             middle, heading, slope = self._dashes
             near = np.hypot(*(middle[:, :2] - self.data.qpos[:2]).T) < _DASH_NEAR
@@ -194,6 +198,16 @@ def _add(
     geom = scene.geoms[scene.ngeom]
     mujoco.mjv_initGeom(geom, kind, np.array(size), place, frame.ravel(), np.array(rgba, np.float32))
     scene.ngeom += 1
+
+
+def _add_box(scene: Any, size: tuple[float, ...], site: Any, rgba: tuple[float, ...]) -> None:
+    """Add a box at a site of the model."""
+    if scene.ngeom < scene.maxgeom:
+        box = mujoco.mjtGeom.mjGEOM_BOX
+        mujoco.mjv_initGeom(
+            scene.geoms[scene.ngeom], box, np.array(size), site.xpos, site.xmat, np.array(rgba, np.float32)
+        )
+        scene.ngeom += 1
 
 
 def has_screen() -> bool:

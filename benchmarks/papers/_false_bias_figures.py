@@ -17,6 +17,11 @@ _AXES = (("forward", "#888888"), ("to the left", "#c1440e"), ("up", "#1f6fb4"))
 _BINS = 12
 
 
+def signed(value: float) -> str:
+    """With two digits and its sign; what rounds to nothing has none."""
+    return f"{value:+.2f}" if abs(value) >= 0.005 else "0"
+
+
 def cause(path: Path, simulated: Feet, made_of: Mapping[str, float]) -> None:
     """How the foot moves while it is called still, what the filter makes of it, and of which part.
 
@@ -35,7 +40,7 @@ def cause(path: Path, simulated: Feet, made_of: Mapping[str, float]) -> None:
     axis.axhline(0, color="#222222", lw=0.8)
     axis.set_xlabel("share of the time that it is called still (%)")
     axis.set_ylabel("velocity of the IMU (cm/s)")
-    axis.set_title("a  A foot at rest is not still", loc="left", fontsize=10)
+    axis.set_title("a  A foot that is called still moves", loc="left", fontsize=10)
     axis.legend(frameon=False, fontsize=8, title="mean over strides", title_fontsize=8)
 
     axis = axes[0, 1]
@@ -49,7 +54,11 @@ def cause(path: Path, simulated: Feet, made_of: Mapping[str, float]) -> None:
     axis.plot(found.t, found.distance, "--", color="#222222", label="distance come (m)")
     axis.set_xlabel("time since lift-off (s)")
     axis.set_ylabel("m")
-    axis.set_title("b  To the filter, sideways is a bias", loc="left", fontsize=10)
+    axis.set_title(
+        "b  The filter takes sideways speed for gyro bias:\nits covariance grows with the stride",
+        loc="left",
+        fontsize=10,
+    )
     axis.legend(frameon=False, fontsize=8, loc="upper left")
 
     axis = axes[0, 2]
@@ -61,12 +70,16 @@ def cause(path: Path, simulated: Feet, made_of: Mapping[str, float]) -> None:
     colours[-1] = "#222222"
     axis.barh(names, values, color=colours)
     for k, value in enumerate(values):
-        axis.text(max(value, 0) + 0.01, k, f"{value:+.2f}", va="center", fontsize=8)
+        axis.text(max(value, 0) + 0.01, k, signed(value), va="center", fontsize=8)
     axis.axvline(0, color="#222222", lw=0.8)
     axis.set_xlim(min(0, *values) * 1.15, max(values) * 1.2)
     axis.grid(axis="y", visible=False)
     axis.set_xlabel("false gyro bias about the vertical (deg/s)")
-    axis.set_title("c  What is called zero", loc="left", fontsize=10)
+    axis.set_title(
+        "c  False bias by the part of the motion called zero\n(red: what makes it, black: all of it)",
+        loc="left",
+        fontsize=10,
+    )
     save(figure, path)
 
 
@@ -95,7 +108,9 @@ def cure(path: Path, simulated: Feet, pairs: Mapping[str, tuple[float, float]]) 
     axis.set_ylim(1e-3, None)
     axis.set_xlabel("time (min)")
     axis.set_ylabel("heading error (deg)")
-    axis.set_title("a  A perfect IMU on a simulated foot", loc="left", fontsize=10)
+    axis.set_title(
+        "a  A perfect IMU on a simulated foot: all error is the filter's own", loc="left", fontsize=10
+    )
     # Below the axes: wherever the lines run, they leave no room within.
     axis.legend(frameon=False, fontsize=8, loc="upper left", bbox_to_anchor=(-0.02, -0.13))
 
@@ -110,6 +125,6 @@ def cure(path: Path, simulated: Feet, pairs: Mapping[str, tuple[float, float]]) 
     axis.invert_yaxis()
     axis.grid(axis="y", visible=False)
     axis.set_xlabel("turned away from dead reckoning with the bias at rest (deg/s)")
-    axis.set_title("b  The same on real feet", loc="left", fontsize=10)
+    axis.set_title("b  Real feet: false bias of the filter, less is better", loc="left", fontsize=10)
     axis.legend(frameon=False, fontsize=8, ncols=2, loc="lower right", bbox_to_anchor=(1.0, 1.0))
     save(figure, path)

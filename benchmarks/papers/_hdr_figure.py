@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from footfall.hdr.hdr import HdrParams
 from footfall.scenarios.report.style import new_figure, save
 
 _LABELS = ("tuning units", "judged units (hindsight)")
@@ -42,12 +43,22 @@ def draw(
                 fontweight="bold" if best else "normal",
                 bbox={"facecolor": "none", "edgecolor": colour, "pad": 2} if best else None,
             )  # fmt: skip
+        default = HdrParams()
+        at = [
+            int(np.argmin(np.abs(np.asarray(values) - value)))
+            for values, value in ((theta_w, np.degrees(default.theta_w)), (i_c, np.degrees(default.i_c)))
+        ]
+        axis.plot(*at, "s", ms=21, mfc="none", mec="#c1440e", mew=1.8)
         axis.set_xticks(range(len(theta_w)), [f"{value:g}" for value in theta_w])
         axis.set_yticks(range(len(i_c)), [f"{value:g}" for value in i_c])
         axis.grid(False)
         axis.set_xlabel("theta_w (deg/s)")
         axis.set_ylabel("i_c (deg/s per footfall)")
-        axis.set_title(f"Average heading error (deg), {label}", loc="left", fontsize=9)
+        axis.set_title(
+            f"Average heading error (deg), {label}\n(red: nearest to the default; frame: smallest)",
+            loc="left",
+            fontsize=9,
+        )
     axis = axes.flat[2]
     before = methods["uncorrected"][:, 1]
     corrected = [name for name in methods if name != "uncorrected"]

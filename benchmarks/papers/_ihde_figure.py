@@ -18,6 +18,8 @@ from footfall.scenarios.scenario import Scenario
 from footfall.scenarios.trial import Trial, setup
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from benchmarks.papers.ihde_table2 import Tuned
 
 _SHOWN = ("iez", "hde", "ihde", "ihde-plus")
@@ -53,6 +55,29 @@ def return_errors(errors: Mapping[str, Mapping[str, np.ndarray]]) -> Figure:
     return figure
 
 
+def look_closer(axis: Axes, result: Result) -> None:
+    """An inset of some metres round the middle of the walk, where good tracks lie on each other."""
+    truth = result.walk.footfalls.position[:, :2]
+    x, y = truth[len(truth) // 2]
+    half = 0.02 * max(float(np.ptp(axis.get_xlim())), float(np.ptp(axis.get_ylim())))
+    # In the corner of the panel that is emptiest.
+    points = np.vstack([line.get_xydata() for line in axis.lines])
+    left, right, low, high = *axis.get_xlim(), *axis.get_ylim()
+    share = (points - (left, low)) / (right - left, high - low)
+    corners = {
+        (cx, cy): int((np.abs(share - (cx + 0.17, cy + 0.17)) < 0.19).all(axis=1).sum())
+        for cx in (0.02, 0.64)
+        for cy in (0.02, 0.64)
+    }
+    place = min(corners, key=lambda corner: corners[corner])
+    inset = axis.inset_axes((*place, 0.34, 0.34), xlim=(x - half, x + half), ylim=(y - half, y + half))
+    for line in axis.lines:
+        inset.plot(*line.get_data(), color=line.get_color(), lw=line.get_linewidth(), alpha=line.get_alpha())
+    inset.set(xticks=[], yticks=[])
+    inset.set_title(f"{2 * half:.1f} m", fontsize=7, pad=2)
+    axis.indicate_inset_zoom(inset, edgecolor="#222222")
+
+
 def draw(
     folder: Path,
     scenarios: Mapping[str, Scenario],
@@ -67,6 +92,7 @@ def draw(
     figure = maps(list(results.values()), "Walked paths, and what methods make of a gyro with a bias")
     for axis, (test, scenario) in zip(figure.axes, scenarios.items(), strict=True):
         axis.set_title(f"{test}, {scenario.path.route.length:.0f} m", loc="left", fontsize=9)
+        look_closer(axis, results[test])
     save(figure, folder / "ihde_tracks.png")
     title = "ihde-test2: heading, and what IHDE makes of it"
     save(evaluation(results["ihde-test2"], title), folder / "ihde_evaluation.png")

@@ -3,7 +3,7 @@ against one, and how soon a finished study of 100,000 rows says that nothing is 
 
 Times of the clock mean something on an idle machine alone; CPU times, and their ratios, on a busy one, too.
 
-python -m benchmarks.speed.sweep --units 100
+python -m benchmarks.speed.sweep --units 400
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from footfall.scenarios.evaluate import cases
 from footfall.scenarios.judge.score import Score, score
 from footfall.scenarios.report.tables import new_table
 from footfall.scenarios.scenario import load_scenario
+from footfall.scenarios.store import footfalls_file, footfalls_folder
 from footfall.scenarios.studies.local import spread
 from footfall.scenarios.studies.plan import plan_of
 from footfall.scenarios.studies.study import Study
@@ -64,6 +65,15 @@ samples = 500
 """
 
 
+FEW = 10  # units, of a study that takes little but what every study does once
+LABELS = {
+    "by_hand": "a unit by hand",
+    "study": "a unit of a study",
+    "once": "a study, once",
+    "tracks": "of this, its report's tracks",
+}
+
+
 def by_hand(trials: Sequence[Trial], walk: Walk) -> None:
     """The bare stages."""
     for trial in trials:
@@ -81,27 +91,49 @@ def cpu(work: Callable[[], Any]) -> float:
     return time.process_time() - start
 
 
+def units_on_one_walk(units: int) -> Study:
+    """The study that is timed."""
+    table = {"description": "units on one walk", "scenarios": ["closed-loop"], "methods": ["pdr", "hdr"]}
+    return Study(f"speed-{units}", table | {"cases": {"walks": 1, "units": units}})
+
+
+def forget(trials: Sequence[Trial], walk: Walk) -> None:
+    """Their kept footfalls, or nothing would be recorded and reckoned."""
+    for trial in trials:
+        footfalls_file(footfalls_folder(), trial, walk.sha).unlink(missing_ok=True)
+
+
 def overhead(study: Study, folder: Path) -> dict[str, float]:
-    """CPU seconds of the units of a study, in turns by hand and as a study, in this process."""
+    """CPU seconds of the units of a study, in turns by hand and as a study, in this process.
+
+    What a study does once, however many units it has (plan, ground, walk), is told apart: it is what the
+    first study of a few units takes beyond its share.
+    """
     scenario = load_scenario(study.file.scenarios[0])
     made = setup(scenario, methods=study.methods)
-    trials = cases(made, units=study.file.cases.units, walks=1)
+    units = study.file.cases.units
+    trials = cases(made, units=units, walks=1)
     walk = walk_of(trials[0])
     by_hand(trials[:1], walk)  # compiled
-    halves = [trials[::2], trials[1::2]]
-    hand = cpu(lambda: by_hand(halves[0], walk))
     place = folder / "overhead"
+
+    def study_of_few(name: str) -> None:
+        forget(trials, walk)
+        list(sweep(units_on_one_walk(FEW), folder / name, 1))
+        forget(trials, walk)
 
     def all_of_it() -> None:
         list(sweep(study, place, 1))
 
+    hand = cpu(lambda: by_hand(trials[::2], walk))
+    first, some = (cpu(lambda at=at: study_of_few(at)) for at in ("first", "second"))
     whole = cpu(all_of_it)
-    hand += cpu(lambda: by_hand(halves[1], walk))
+    hand += cpu(lambda: by_hand(trials[1::2], walk))
     shutil.rmtree(place / "tracks")
     again = cpu(all_of_it)  # the report's tracks alone
     nothing = cpu(all_of_it)
-    tracks = again - nothing
-    return {"by_hand": hand, "study": whole - tracks, "tracks": tracks}
+    each = (whole - some) / (units - FEW)
+    return {"by_hand": hand / units, "study": each, "once": first - FEW * each, "tracks": again - nothing}
 
 
 def two_against_one(study: Study) -> dict[str, float]:
@@ -165,11 +197,10 @@ def nothing_left(text: str, folder: Path) -> dict[str, float]:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print the tables."""
     parser = options(__doc__, processes=False)
-    parser.add_argument("--units", type=int, default=100, help="of the first two (default 100)")
+    parser.add_argument("--units", type=int, default=200, help="of the first two (default 200)")
     parser.add_argument("--only", choices=("overhead", "two", "start"), help="one of the three")
     chosen = parser.parse_args(arguments)
-    table = {"description": "units on one walk", "scenarios": ["closed-loop"], "methods": ["pdr", "hdr"]}
-    study = Study("speed", table | {"cases": {"walks": 1, "units": chosen.units}})
+    study = units_on_one_walk(chosen.units)
     figures: dict[str, Any] = {"load": os.getloadavg()[0]}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -177,10 +208,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
             found = figures["overhead"] = overhead(study, folder)
             share = found["study"] / found["by_hand"] - 1
             shown = new_table(f"{chosen.units} units of the closed loop, pdr and hdr, one process", "CPU s")
-            for what, value in found.items():
-                shown.add_row(what.replace("_", " "), f"{value:.2f}")
+            for what, label in LABELS.items():
+                shown.add_row(label, f"{found[what]:.3f}")
             out.print(shown)
-            out.print(f"a study takes {share:+.1%} beside the work by hand")
+            out.print(f"a unit of a study takes {share:+.1%} beside the work by hand")
         if chosen.only in (None, "two"):
             found = figures["two"] = two_against_one(study)
             out.print(

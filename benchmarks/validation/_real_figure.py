@@ -43,6 +43,6 @@ def draw(reals: Sequence[Real], tracks: Mapping[tuple[str, str], Track], path: P
             axis.plot(0, 0, "^", color="#222222", ms=7, label="start and end")
         axis.set_title(real.name, fontsize=9)
         axis.set_aspect("equal", adjustable="datalim")
-    label_edges(panels, "m", "m")
+    label_edges(panels, "x (m)", "y (m)")
     head(figure, "Real feet, default settings; squares: where each track ends", panels)
     save(figure, path)

@@ -14,6 +14,7 @@ import numpy as np
 from rich.table import Table
 
 from benchmarks._common import options, out, write_json
+from footfall.scenarios.report.style import COLOURS, entitle, head, new_figure, save
 
 _SMOOTH = 8  # log lines
 
@@ -34,35 +35,37 @@ def read_log(run: Path) -> dict[str, np.ndarray]:
 
 def draw(log: dict[str, np.ndarray], choice: dict, figure: Path) -> None:
     """Falls a minute with the reward, and the falls of the checkpoints on the courses of choice."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
-
-    millions = log["samples"] / 1e6
-    fig, (left, right) = plt.subplots(1, 2, figsize=(9.5, 3.4), layout="constrained", width_ratios=[1.7, 1])
-    left.semilogy(millions, np.maximum(log["falls_per_min"], 0.3), ".", color="0.75", ms=3)
-    left.semilogy(millions, smoothed(log["falls_per_min"]), color="C3", label="falls a minute, exploring")
-    left.set(xlabel="samples (million control steps)", ylabel="falls a minute of walking", xlim=(0, None))
+    millions, falls = log["samples"] / 1e6, np.maximum(log["falls_per_min"], 0.3)
+    fig, axes = new_figure(1, 3, 11.0, 3.4, width_ratios=[1, 1, 1])
+    left, middle, right = axes[0]
+    left.semilogy(millions, falls, ".", color="#bbbbbb", ms=3)
+    left.semilogy(millions, smoothed(log["falls_per_min"]), color=COLOURS["pdr"])
+    left.yaxis.set_major_formatter("{x:g}")
+    left.set_ylabel("falls a minute")
+    entitle(left, "falls while exploring")
+    middle.plot(millions, log["reward"], ".", color="#bbbbbb", ms=3)
+    middle.plot(millions, smoothed(log["reward"]), color=COLOURS["hdr"])
+    middle.set_ylabel("reward a control step")
+    entitle(middle, "reward")
     full = millions[np.argmax(log["level"] >= 1)]
-    left.axvspan(0, full, color="0.95", zorder=0)
-    left.text(full, left.get_ylim()[1], " full difficulty", va="top", fontsize=8, color="0.35")
-    other = left.twinx()
-    other.plot(millions, smoothed(log["reward"]), color="C0")
-    other.set_ylabel("reward a control step", color="C0")
-    left.spines["top"].set_visible(False)
+    for axis in (left, middle):
+        axis.axvspan(0, full, color="#eeeeee", zorder=0, label="courses still getting harder")
+        axis.set_xlim(0, None)
+        axis.set_xlabel("samples (million control steps)")
     names = sorted(choice["choice"])
-    falls = [choice["choice"][name]["falls_per_hour"] for name in names]
-    colours = ["C2" if name == choice["chosen"] else "0.7" for name in names]
-    bars = right.bar([name[7:10].lstrip("0") for name in names], falls, color=colours)
+    counts = [choice["choice"][name]["falls_per_hour"] for name in names]
+    colours = [COLOURS["hde"] if name == choice["chosen"] else "#bbbbbb" for name in names]
+    bars = right.bar([name[7:10].lstrip("0") for name in names], counts, color=colours)
     right.bar_label(bars, fmt="%.0f", fontsize=8)
-    right.axhline(choice["judgement"]["falls_per_hour"], color="C2", ls="--", lw=1)
-    right.set(xlabel="checkpoint (% of the training)", ylabel="falls an hour, courses of choice")
-    right.set_title("green: chosen; dashed: it, on other courses", fontsize=9)
-    for side in ("top", "right"):
-        right.spines[side].set_visible(False)
+    elsewhere = choice["judgement"]["falls_per_hour"]
+    right.axhline(elsewhere, color=COLOURS["hde"], ls="--", label="the chosen one, on courses of judgement")
+    right.grid(axis="x", visible=False)
+    right.set_xlabel("checkpoint (% of the training)")
+    right.set_ylabel("falls an hour")
+    entitle(right, "courses of choice; green: the chosen one")
+    head(fig, "How the walker learnt (dots: log lines; lines: their moving mean)", [left, right])
     figure.parent.mkdir(parents=True, exist_ok=True)
-    fig.savefig(figure, dpi=150)
+    save(fig, figure)
 
 
 def main() -> None:

@@ -13,7 +13,7 @@ def list_(as_json: JsonOption = False) -> None:
     from footfall.models.imu import EFFECTS, load_spec, stock_specs
     from footfall.models.mount import MOUNTS
     from footfall.pdr.detectors import DETECTORS, summary
-    from footfall.scenarios.path import build_path
+    from footfall.scenarios.layouts import laid_out
     from footfall.scenarios.report.tables import new_table, titled
     from footfall.scenarios.scenario import ScenarioFile, read_document, stock_scenarios
     from footfall.toml import checked
@@ -37,8 +37,9 @@ def list_(as_json: JsonOption = False) -> None:
         return
     table = new_table("name", "what", "length\nm", "pace\nm/s", "walks", left=2)
     for name, scenario in scenarios.items():
-        length, pace = f"{build_path(scenario.path).route.length:.0f}", f"{scenario.gait.pace_m_s:g}"
-        table.add_row(name, scenario.description, length, pace, f"{scenario.seeds.walks}")
+        length = laid_out(scenario.path, scenario.seeds.base).route.length
+        pace, walks = f"{scenario.gait.pace_m_s:g}", f"{scenario.seeds.walks}"
+        table.add_row(name, scenario.description, f"{length:.0f}", pace, walks)
     OUT.print(titled("Scenarios", table))
     for title, rows in (
         ("IMUs", imus),

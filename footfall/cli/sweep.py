@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from footfall.cli.cluster import PatienceOption, SchedulerOption, working
 from footfall.cli.options import JsonOption, SetOption
 from footfall.cli.terminal import ERR, INTERRUPTED, OUT, print_json, say
 from footfall.errors import InputError
 
 if TYPE_CHECKING:
+    from footfall.scenarios.studies.spreading import Workers
     from footfall.scenarios.studies.study import Study
     from footfall.scenarios.studies.sweep import Progress
 
-RESUMABLE = 4  # exit code: stopped from outside of the study
 REASONS = 12  # that are printed
 _EVERY_S = 30.0  # a line where there is no terminal
 
@@ -28,35 +29,33 @@ def sweep(
     study: Annotated[
         str,
         typer.Argument(
-            help="Your study (TOML, docs/sweeps.md), one that comes with Footfall, or `list` to see those.",
+            help="Your study (TOML, docs/sweeps.md), the name of a stock study, or `list` to show the names.",
             show_default=False,
         ),
     ],
-    plan: Annotated[bool, typer.Option("--plan", help="Tell what it would cost, and do nothing.")] = False,
-    units: Annotated[
-        int | None, typer.Option(min=1, help="So many units; the study says if left out.")
-    ] = None,
+    plan: Annotated[bool, typer.Option("--plan", help="Only print what the study would cost.")] = False,
+    units: Annotated[int | None, typer.Option(min=1, help="Number of units. Default: the study's.")] = None,
     walks: Annotated[
-        int | None, typer.Option(min=1, help="So many walks of each scenario; the study says if left out.")
+        int | None, typer.Option(min=1, help="Number of walks of each scenario. Default: the study's.")
     ] = None,
     settings: SetOption = None,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the results; out/STUDY if left out.", show_default=False)
+        Path | None, typer.Option(help="Folder for the results. Default: out/STUDY.", show_default=False)
     ] = None,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes at once; one a core if left out.", show_default=False)
+        int | None, typer.Option(min=1, help="Number of processes. Default: one a core.", show_default=False)
     ] = None,
-    retry_failed: Annotated[
-        bool, typer.Option("--retry-failed", help="Do again the tasks in which something failed.")
-    ] = False,
-    fresh: Annotated[bool, typer.Option("--fresh", help="Forget what was done before.")] = False,
+    scheduler: SchedulerOption = None,
+    patience: PatienceOption = 600.0,
+    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Run the failed tasks again.")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Delete earlier results first.")] = False,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if any row failed.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Do a study: as many walks, units, sheets, settings and methods as it says; each gives a row of scores.
+    """Run a study over walks, units, sheets, settings and methods: one table, a row of scores for each.
 
-    Start it again after whatever has ended it: what is done is not done again, and a changed study keeps the
-    parts that still belong to it. The folder gets report.html to look at, and results.parquet.
+    Start it again after an interruption: finished work is kept, and a changed study keeps the parts that
+    still belong to it. The results are report.html and results.parquet.
     """
     from footfall.scenarios.parameters import parsed
     from footfall.scenarios.studies.study import Study
@@ -77,9 +76,9 @@ def sweep(
         _plan(chosen, folder, workers, as_json)
     else:
         command = " ".join([*told, *([f"--out {out}"] if out else [])])
-        _sweep(
-            chosen, folder, workers, command, as_json=as_json, strict=strict, retry=retry_failed, fresh=fresh
-        )
+        how = {"as_json": as_json, "strict": strict, "retry": retry_failed, "fresh": fresh}
+        with working(scheduler, patience, workers) as crew:
+            _sweep(chosen, folder, crew, command, **how)
 
 
 def _list(as_json: bool) -> None:
@@ -115,7 +114,7 @@ def _plan(study: Study, folder: Path, workers: int | None, as_json: bool) -> Non
 def _sweep(
     study: Study,
     folder: Path,
-    workers: int | None,
+    crew: Workers,
     command: str,
     *,
     as_json: bool,
@@ -123,11 +122,10 @@ def _sweep(
     retry: bool,
     fresh: bool,
 ) -> None:
-    from footfall.scenarios.execute import cores
     from footfall.scenarios.studies.describe import cost_line, headline
     from footfall.scenarios.studies.parts import StudyFolder
     from footfall.scenarios.studies.plan import cost_of, plan_of
-    from footfall.scenarios.studies.sweep import StoppedError
+    from footfall.scenarios.studies.spreading import count
     from footfall.scenarios.studies.sweep import sweep as perform
 
     start = time.monotonic()
@@ -136,14 +134,10 @@ def _sweep(
         left = [] if fresh or retry else StudyFolder(folder).left(made.tasks)
     say(headline(made))
     if not (fresh or retry):
-        say(f"   {cost_line(cost_of(made, left), workers or cores())}")
+        say(f"   {cost_line(cost_of(made, left), count(crew))}")
     with _stopping() as asked, _showing(study.name) as show:
         keys = {"fresh": fresh, "retry_failed": retry, "command": command, "on_progress": show}
-        try:
-            *_, now = perform(made, folder, workers, stop=lambda: bool(asked), **keys)
-        except StoppedError as error:
-            say(f"footfall: stopped: {error}; start it again to go on")
-            raise typer.Exit(RESUMABLE) from None
+        *_, now = perform(made, folder, crew, stop=lambda: bool(asked), **keys)
     for warning in now.warnings:
         say(f"{folder}: {warning}")
     if now.stage == "stopped":
@@ -191,7 +185,7 @@ def _stopping() -> Iterator[list[int]]:
         if asked:
             raise KeyboardInterrupt
         asked.append(number)
-        say("finishing the tasks in the making; once more ends at once")
+        say("finishing the running tasks; Ctrl-C again stops at once")
 
     before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
     try:

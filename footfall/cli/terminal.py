@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import math
 import os
 import shlex
@@ -15,11 +16,13 @@ from typing import Any
 import typer
 from rich.console import Console
 
+from footfall.cli.logs import SAID
 from footfall.errors import InputError
 
 OUT = Console()
 ERR = Console(stderr=True)
 INTERRUPTED = 130  # as shells have it
+RESUMABLE = 4  # stopped from outside: a full disk, a cluster that is gone
 
 # Of what typer raises for wrong arguments; which library the class comes from depends on its version.
 _USAGE_ERROR: type[BaseException] = typer.BadParameter.__mro__[1]
@@ -32,6 +35,7 @@ def print_json(document: Any) -> None:
 
 def say(text: str) -> None:
     """A line for people, on standard error."""
+    logging.getLogger(SAID).info("%s", text)
     ERR.print(text, markup=False, highlight=False, soft_wrap=True)
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.progress import Progress
+from rich.progress import Progress, TaskID
 
 from footfall.cli.options import NoCacheOption, ScenarioArgument, SetOption
 from footfall.cli.terminal import ERR, TABLES, finite, require_output, say
@@ -22,31 +22,32 @@ def walk(
         ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(min=0, help="Seed of this walk; the scenario says if left out.")
+        int | None, typer.Option(min=0, help="Seed of this walk. Default: the scenario's.")
     ] = None,
     number: Annotated[
-        int, typer.Option(min=1, help="Which of the scenario's walks: its subject and its seed.")
+        int, typer.Option(min=1, help="Which of the scenario's walks. It decides subject and seed.")
     ] = 1,
     rate: Annotated[
         float | None,
         typer.Option(
-            help="Samples per second (Hz), a divisor of 1000; the scenario says if left out.",
+            help="Sampling rate, Hz, a divisor of 1000. Default: the scenario's.",
             callback=finite,
         ),
     ] = None,
     mount: Annotated[
         str | None,
         typer.Option(
-            help="Where on the shoe the IMU sits (see `footfall list`); the scenario says if left out."
+            help="Place of the IMU on the shoe (see `footfall list`). Default: the scenario's. Several by "
+            "commas are one walk in a file each: walk-heel.parquet."
         ),
     ] = None,
     view: Annotated[
-        bool, typer.Option("--view", help="Watch it first in MuJoCo's viewer, which needs a screen.")
+        bool, typer.Option("--view", help="First show the walk in MuJoCo's viewer, which needs a screen.")
     ] = False,
     settings: SetOption = None,
     no_cache: NoCacheOption = False,
 ) -> None:
-    """Walk a scenario once and write the truth: where the IMU was, and what a perfect one would say.
+    """Walk a scenario once and write the truth: the motion of the IMU and the signals of a perfect one.
 
     The true footfalls go into a second file: walk.parquet and walk.footfalls.parquet.
     """
@@ -66,34 +67,41 @@ def walk(
     elif not view:
         raise InputError("Missing option '--output' / '-o' (see `footfall walk --help`)")
     require_areas(values := parsed(settings or ()), ("scenario",), "walk")
-    plan = with_values(documents(scenario), values).setup().scenario.plan(number - 1)
-    if mount is not None:
-        if mount not in MOUNTS:
-            raise InputError(f"--mount {mount!r} is unknown{did_you_mean(mount, MOUNTS)}")
-        plan = replace(plan, mount=MOUNTS[mount])
+    plan = with_values(documents(scenario), values).setup().scenario.plan(number - 1, seed)
+    mounts = list(dict.fromkeys(name.strip() for name in mount.split(","))) if mount else []
+    for name in mounts:
+        if name not in MOUNTS:
+            raise InputError(f"--mount {name!r} is unknown{did_you_mean(name, MOUNTS)}")
+    if mounts:
+        plan = replace(plan, mount=MOUNTS[mounts[0]])
     if rate is not None:
         divisor(PHYSICS_STEP, rate)
         plan = replace(plan, rate_hz=rate)
-    if seed is not None:
-        plan = replace(plan, seed=seed)
     if view:
         from footfall.simulate.render import view as show
 
         show(plan)
     if output is None:
         return
-    with Progress(console=ERR, transient=True, disable=not ERR.is_terminal) as progress:
-        bar = progress.add_task("walking", total=plan.route.length)
+    # The body feels no mount: the same plan takes the same steps, and its truth is told at another place.
+    plans = {output: plan}
+    if len(mounts) > 1:
+        plans = {
+            output.with_stem(f"{output.stem}-{name}"): replace(plan, mount=MOUNTS[name]) for name in mounts
+        }
+    for file, one in plans.items():
+        with Progress(console=ERR, transient=True, disable=not ERR.is_terminal) as progress:
+            bar = progress.add_task(f"walking {file.stem}", total=one.route.length)
 
-        def walked(metres: float) -> None:
-            progress.update(bar, completed=metres)
+            def walked(metres: float, progress: Progress = progress, bar: TaskID = bar) -> None:
+                progress.update(bar, completed=metres)
 
-        def waiting() -> None:
-            progress.update(bar, description="another process is walking this; waiting")
+            def waiting(progress: Progress = progress, bar: TaskID = bar) -> None:
+                progress.update(bar, description="another process is walking this; waiting")
 
-        if no_cache:
-            truth = walk_anew(plan, on_progress=walked)
-        else:
-            truth = cached_walk(plan, on_progress=walked, on_wait=waiting)
-    write_walk(truth, output)
-    say(f"{len(truth.footfalls.t)} footfalls in {truth.t[-1]:.0f} s: {output}")
+            if no_cache:
+                truth = walk_anew(one, on_progress=walked)
+            else:
+                truth = cached_walk(one, on_progress=walked, on_wait=waiting)
+        write_walk(truth, file)
+        say(f"{len(truth.footfalls.t)} footfalls in {truth.t[-1]:.0f} s: {file}")

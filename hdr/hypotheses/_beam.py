@@ -41,6 +41,7 @@ from footfall.hdr.hypotheses._linear import (
     resting,
     seeing,
     seen,
+    set_out,
     update,
 )
 from footfall.hdr.hypotheses._sight import (
@@ -68,6 +69,12 @@ BRANCHES = 4  # of a hypothesis, beside straights: two for each habit
 
 
 @kernel(error_model="numpy")
+def tells(world, mode, c):  # type: ignore[no-untyped-def]
+    """Whether a known dominant direction tells that in which a hypothesis sets out."""
+    return world == ALONG and mode == STRAIGHT and not math.isnan(c.reference)
+
+
+@kernel(error_model="numpy")
 def begin_all(x, P, weights, labels, counters, course, c):  # type: ignore[no-untyped-def]
     """Hypotheses before the first stride: each mode, habit and scale."""
     n = 0
@@ -80,7 +87,8 @@ def begin_all(x, P, weights, labels, counters, course, c):  # type: ignore[no-un
             chance = exists * (c.straight_first if mode == STRAIGHT else 1.0 - c.straight_first)
             for habit in range(len(c.wander_m)):
                 for scale in range(len(c.scales)):
-                    begin(x[n], P[n], course, mode, habit, c.scales[scale], c)
+                    told = tells(world, mode, c)
+                    begin(x[n], P[n], course, mode, habit, c.scales[scale], told, c)
                     weights[n] = math.log(chance / ways)
                     labels[n, MODE], labels[n, HABIT], labels[n, SCALE] = mode, habit, scale
                     labels[n, WORLD] = world
@@ -101,7 +109,7 @@ def step(x, P, weights, labels, counters, lengths, x2, P2, row, c, out):  # type
             counters[BEGUN] = 2  # begun before any direction
     if good and counters[BEGUN] == 2:
         for j in range(counters[COUNT]):
-            x[j, PATH] = x[j, REFERENCE] = row[COURSE] - x[j, DRIFT]
+            set_out(x[j], row[COURSE], tells(labels[j, WORLD], labels[j, MODE], c), c)
         counters[BEGUN] = 1
     count = counters[COUNT]
     length = 0.5 * (row[DISTANCE] + lengths[LAST]) if lengths[LAST] > 0.0 else row[DISTANCE]

@@ -41,14 +41,20 @@ STAYS, GENTLE, TIGHT, ALIGNED = range(4)  # how a mode is entered: two kinds of 
 
 
 @kernel(error_model="numpy")
-def begin(x, P, course, mode, habit, scale, c):  # type: ignore[no-untyped-def]
-    """The state before the first stride, whose direction is `course`."""
+def begin(x, P, course, mode, habit, scale, told, c):  # type: ignore[no-untyped-def]
+    """The state before the first stride, whose direction is `course`.
+
+    told : the walk sets out on a straight along one of the dominant directions, which are known
+    """
     x[:] = 0.0
     P[:] = 0.0
-    x[PATH] = course
-    P[PATH, PATH] = 0.25
+    P[PATH, PATH] = c.beside * c.beside if told else 0.25
     become(x, P, REFERENCE, PATH)
-    P[REFERENCE, REFERENCE] += c.beside * c.beside
+    if told:
+        P[PATH, PATH] += c.beside * c.beside
+    else:
+        P[REFERENCE, REFERENCE] += c.beside * c.beside
+    set_out(x, course, told, c)
     aside = c.wander_m[habit]
     fresh(P, aside, c.wander_s[habit], c.place_m)
     P[FOOT_BEFORE, FOOT_BEFORE] = aside * aside + c.place_m * c.place_m
@@ -59,6 +65,15 @@ def begin(x, P, course, mode, habit, scale, c):  # type: ignore[no-untyped-def]
     P[WARM, WARM] = (scale * c.warmth) ** 2
     for k in range(LOADED, STATES):
         P[k, k] = scale * scale
+
+
+@kernel(error_model="numpy")
+def set_out(x, course, told, c):  # type: ignore[no-untyped-def]
+    """The direction in which the walk begins, and the dominant one: known, or the same."""
+    x[PATH] = x[REFERENCE] = course - x[DRIFT]
+    if told:
+        x[REFERENCE] = c.reference
+        x[PATH] = c.reference + nearest(x[PATH] - c.reference, c)
 
 
 @kernel(error_model="numpy")

@@ -71,6 +71,12 @@ def first(c: Constants, course: float) -> list[Hypothesis]:
             cov = np.diag(sd**2) + new_line(c, habit)
             cov[REFERENCE, PATH] = cov[PATH, REFERENCE] = cov[PATH, PATH]
             cov[REFERENCE, REFERENCE] = cov[PATH, PATH] + c.beside**2
+            if world == _beam.ALONG and mode == STRAIGHT and not math.isnan(c.reference):
+                mean[REFERENCE] = c.reference
+                sector = 2 * math.pi / c.directions
+                mean[PATH] = c.reference + sector * math.floor((course - c.reference) / sector + 0.5)
+                lines = c.beside**2 * np.array([[2, 1], [1, 1]])
+                cov[np.ix_([PATH, REFERENCE], [PATH, REFERENCE])] = lines
             weight = math.log(chance / ways)
             found.append(Hypothesis(mode, habit, scale, world, STAYS, 0, False, weight, mean, cov))
     return found

@@ -109,10 +109,11 @@ def pull_update(y, L, h, gained, left, s, g):  # type: ignore[no-untyped-def]
 
 
 @kernel(error_model="numpy")
-def smooth(rows, c, modes, habits, entries, scale, first_mode, first_habit):  # type: ignore[no-untyped-def]
+def smooth(rows, c, modes, habits, entries, scale, first_mode, first_habit, told):  # type: ignore[no-untyped-def]
     """Drift and its variance, each (n,), given all rows (n, SIGHT) and one sequence of labels (n,).
 
     scale : of the sensor's priors; first_mode, first_habit : before the first stride
+    told : as of `_linear.begin`
     """
     n, m = len(rows), STATES
     kept, mean = np.zeros((n, m)), np.zeros(n)
@@ -124,7 +125,7 @@ def smooth(rows, c, modes, habits, entries, scale, first_mode, first_habit):  # 
     for i in range(n - 1, 0, -1):
         if rows[i, DISTANCE] >= c.shortest_m:
             course = rows[i, COURSE]
-    begin(x, P, course, first_mode, first_habit, scale, c)
+    begin(x, P, course, first_mode, first_habit, scale, told, c)
     for i in range(1, n):
         row = rows[i]
         habit = habits[i - 1] if i > 1 else first_habit

@@ -97,9 +97,11 @@ def given(footfalls: Footfalls) -> tuple[np.ndarray, np.ndarray]:
     return np.ascontiguousarray(np.column_stack(seen)), loads
 
 
-def fitting(params: HypothesesParams, footfalls: Footfalls) -> HypothesesParams:
-    """The parameters for these footfalls: without loads the static bias is less sure."""
-    return params if footfalls.strides is not None else replace(params, bias=params.bias_unloaded)
+def fitting(params: HypothesesParams, footfalls: Footfalls) -> Constants:
+    """The constants for these footfalls: without loads the static bias is less sure."""
+    if footfalls.strides is None:
+        params = replace(params, bias=params.bias_unloaded)
+    return params.constants.beside_start(float(footfalls.heading[0]))
 
 
 class Hypotheses:
@@ -139,6 +141,8 @@ class Hypotheses:
         _sight.sight(
             np.array(numbers), np.asarray(loads), *self._memory, self._c.load_sd, self._c.shortest_m, row
         )
+        if not self._begun:
+            self._c = self._c.beside_start(footfall.heading)
         if self._begun:
             _beam.step(*self._state, row, self._c, told)
         else:
@@ -155,7 +159,7 @@ def beliefs(footfalls: Footfalls, params: HypothesesParams | None = None) -> Bel
     InputError
         An interval between two footfalls is not positive.
     """
-    c = fitting(params or HypothesesParams(), footfalls).constants
+    c = fitting(params or HypothesesParams(), footfalls)
     told, _, _ = _beam.beam(rows_of(footfalls, c), c, False)
     return Beliefs(*_believed(told.T, footfalls.heading))
 

@@ -42,8 +42,9 @@ class HypothesesParams:
     straight_first : chance that the walk begins with a straight
     turn_after_short : chance of a turn after strides too short to have a direction
     shortest_m : m, a stride that has a direction
-    directions : evenly spaced dominant directions, of which none need exist; along_first : chance that they
-        do; along : chance that a straight after a turn then lies along one; beside : rad, by which not quite
+    directions : evenly spaced dominant directions, of which none need exist; reference : rad, one of them,
+        where that is known; along_first : chance that they exist; along : chance that a straight after a turn
+        then lies along one; beside : rad, by which not quite
     hypotheses : most that are kept; prune : nats below the best at which one is dropped; sprout : the same of
         one whose mode is new
     merge : standard deviations within which two of the same kind are one
@@ -83,6 +84,7 @@ class HypothesesParams:
     turn_after_short: float = setting(0.3, gt=0, lt=1)
     shortest_m: float = setting(0.45, unit="m", gt=0)
     directions: int = setting(4, ge=1, le=36)
+    reference: float | None = setting(None, unit="rad")
     along_first: float = setting(0.2, ge=0, lt=1)
     along: float = setting(0.9, gt=0, lt=1)
     beside: float = setting(1.0 * DEG, unit="rad", gt=0)
@@ -111,6 +113,7 @@ class HypothesesParams:
     def constants(self) -> Constants:
         """The same as the kernels take it."""
         own: dict[str, Any] = {item.name: getattr(self, item.name) for item in fields(self)}
+        own["reference"] = math.nan if self.reference is None else self.reference
         for name, value in own.items():
             own[name] = np.array(value, dtype=float) if isinstance(value, tuple) else float(value)
         own["hypotheses"] = self.hypotheses
@@ -173,6 +176,7 @@ class Constants(NamedTuple):
     turn_after_short: float
     shortest_m: float
     directions: float
+    reference: float
     along_first: float
     along: float
     beside: float
@@ -182,3 +186,7 @@ class Constants(NamedTuple):
     merge: float
     load_sd: np.ndarray
     log_transitions: np.ndarray
+
+    def beside_start(self, heading: float) -> Constants:
+        """The same for a walk that begins at this heading (rad), from which courses are told."""
+        return self._replace(reference=self.reference - heading)

@@ -28,7 +28,7 @@ def smoothed(footfalls: Footfalls, params: HypothesesParams | None = None) -> Be
     InputError
         An interval between two footfalls is not positive.
     """
-    c = fitting(params or HypothesesParams(), footfalls).constants
+    c = fitting(params or HypothesesParams(), footfalls)
     rows = rows_of(footfalls, c)
     told, history, last = _beam.beam(rows, c, True)
     if not len(last):  # nothing was walked
@@ -39,7 +39,7 @@ def smoothed(footfalls: Footfalls, params: HypothesesParams | None = None) -> Be
         labels, first = sequence(history, int(k))
         ways = len(c.scales)
         first_mode, habit = divmod(first % (2 * len(c.wander_m) * ways), len(c.wander_m) * ways)
-        mode_of, habit_of, scale, _, entry, *_ = labels.T
+        mode_of, habit_of, scale, world, entry, *_ = labels.T
         drift, variance = _smooth.smooth(
             rows,
             c,
@@ -49,6 +49,7 @@ def smoothed(footfalls: Footfalls, params: HypothesesParams | None = None) -> Be
             c.scales[scale[-1]],
             first_mode,
             habit // ways,
+            _beam.tells(world[-1], first_mode, c),
         )
         drifts.append(drift)
         variances.append(variance)

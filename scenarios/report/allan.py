@@ -70,13 +70,14 @@ def allan_table(report: Mapping[str, float]) -> Group:
 
 def _draw(recording: Recording, bias_time: float, white: float, path: Path) -> None:
     from footfall.scenarios.report.style import head, label_edges, new_panels, save
+    from footfall.shown import AXES
 
     interval = recording.interval
     longest = (recording.t[-1] - recording.t[0]) / 5
     tau = np.geomspace(10 * interval, longest, 40)
     deviation = np.degrees(allan_deviation(recording.gyro, interval, tau)) * 3600
     figure, (axis,) = new_panels(1, 6.0, 3.6)
-    for i, (name, colour) in enumerate(zip("xyz", ("#c1440e", "#6a9f3a", "#1f6fb4"), strict=True)):
+    for i, (name, colour) in enumerate(AXES.items()):
         axis.loglog(tau, deviation[:, i], color=colour, lw=1.4, label=f"gyro {name}")
     noise = np.degrees(white / np.sqrt(tau)) * 3600
     axis.loglog(tau, noise, "--", color="#888888", lw=1, label="white noise alone")

@@ -34,13 +34,15 @@ _CAUSES = {
     "temperature": "#c1440e",
     "g_sensitivity": "#1f6fb4",
     "flicker": "#6a9f3a",
-    "white": "#888888",
+    "white": "#444f9b",
     "scale": "#7b4fa3",
-    "misalignment": "#c98a00",
+    "misalignment": "#e3a700",
     "non_linearity": "#d16ba5",
     "rate_random_walk": "#2a9d8f",
     "g2": "#8d5524",
 }
+_WALKS = ("#1f6fb4", "#c1440e", "#6a9f3a", "#7b4fa3", "#e3a700", "#8d5524", "#2a9d8f", "#d16ba5")
+_DASHES = ("-", "--", "-.", ":")  # lines are told apart by these too, in print without colours
 _SHOWN_SHARE = 0.03  # of the largest cause; smaller ones are pooled
 
 
@@ -66,22 +68,34 @@ def maps(results: Sequence[Result], title: str | None = None) -> Figure:
         axis.plot(*truth[0], "^", color=TRUTH, ms=6, ls="", label="start")
         axis.set_aspect("equal", adjustable="datalim")
         entitle(axis, _walk(result))
+    if len({result.trial.setup.scenario.name for result in results}) == 1:
+        _one_scale(axes)
     label_edges(axes, "x (m)", "y (m)")
     head(figure, title or _named(results, "tracks"), axes)
     return figure
 
 
+def _one_scale(axes: Sequence[Axes]) -> None:
+    """The same metres in every panel, so that errors are compared by eye."""
+    low, high = (np.array([axis.dataLim.get_points()[end] for axis in axes]) for end in (0, 1))
+    low, high = low.min(axis=0), high.max(axis=0)
+    margin = 0.04 * float((high - low).max())
+    for axis in axes:
+        axis.set_xlim(low[0] - margin, high[0] + margin)
+        axis.set_ylim(low[1] - margin, high[1] + margin)
+        axis.set_aspect("equal", adjustable="box")
+
+
 def heading_errors(results: Sequence[Result]) -> Figure:
     """Heading error against time, one panel a method, one line a walk."""
     methods = list(results[0].tracks)
-    colours = colours_of(methods)
     figure, axes = new_panels(len(methods), 4.4, 3.0)
     for axis, name in zip(axes, methods, strict=True):
         ends = []
         for i, result in enumerate(results):
             row = compare(result.tracks[name], result.walk)
             minutes, error = (row.t - row.t[0]) / 60, np.degrees(row.heading_error)
-            axis.plot(minutes, error, color=colours[name], alpha=1 - 0.6 * i / max(len(results), 2), lw=1.2)
+            axis.plot(minutes, error, _DASHES[i % len(_DASHES)], color=_WALKS[i % len(_WALKS)], lw=1.2)
             ends.append((float(minutes[-1]), float(error[-1])))
         axis.axhline(0, color=TRUTH, lw=0.8)
         if len(results) > 1:
@@ -138,8 +152,9 @@ def drift_budget(results: Sequence[Result]) -> Figure:
     for axis, result, heading in zip(axes, results, headings, strict=True):
         budget = result.budget
         minutes = (budget.t - (budget.t[0] - budget.interval[0])) / 60
-        for cause in shown:
-            axis.plot(minutes, heading[cause], color=colours[cause], lw=1.2, label=cause.replace("_", " "))
+        for i, cause in enumerate(shown):
+            dashes, label = _DASHES[i % len(_DASHES)], cause.replace("_", " ")
+            axis.plot(minutes, heading[cause], dashes, color=colours[cause], lw=1.4, label=label)
         pooled = sum(value for cause, value in heading.items() if cause not in shown)
         if np.any(pooled):
             axis.plot(minutes, pooled, color="#bbbbbb", lw=1.0, label="all others")
@@ -161,17 +176,23 @@ def filtered_rates(results: Sequence[Result], method: str = "hdr", count: int = 
     worst = np.lib.stride_tricks.sliding_window_view(turning[settled:], count).max(axis=1)
     start = settled + int(np.argmin(worst))
     number = np.arange(start, start + count)
-    figure, (axis,) = new_panels(1, 6.4, 3.0)
-    for key, label, colour, width in (
+    figure, axes = new_panels(2, 6.4, 2.3, columns=1, sharex=True)
+    lines = (
         ("raw_rate", "raw", "#999999", 0.9),
         ("rate_once", "once filtered", "#c98a00", 1.4),
         ("rate_twice", "twice filtered", "#1f6fb4", 2.0),
+    )
+    # What HDR judges is small beside the swaying that the filters take away: it has a scale of its own.
+    for axis, chosen, name in zip(
+        axes, (lines, lines[-1:]), ("all of them", "twice filtered, which HDR judges"), strict=True
     ):
-        axis.plot(number, np.degrees(evidence[key][number]), color=colour, lw=width, label=label)
-    axis.axhline(0, color=TRUTH, lw=0.8)
-    label_edges([axis], "footfall", "rate of turn (deg/s)")
+        for key, label, colour, width in chosen:
+            axis.plot(number, np.degrees(evidence[key][number]), color=colour, lw=width, label=label)
+        axis.axhline(0, color=TRUTH, lw=0.8)
+        entitle(axis, name)
+    label_edges(axes, "footfall", "rate (deg/s)")
     title = f"rate of turn over the straightest {count} footfalls of walk {results[0].trial.number + 1}"
-    head(figure, _named(results, title), [axis])
+    head(figure, _named(results, title), axes)
     return figure
 
 
@@ -191,13 +212,15 @@ def controller(results: Sequence[Result], method: str = "hdr") -> Figure:
         axis.plot((budget.t - began) / 60, drift, color=TRUTH, lw=1.6, alpha=0.55, label="true drift")
         minutes = (track.t - began) / 60
         integrator = -np.degrees(track.evidence["integrator"])
-        axis.plot(minutes, integrator, color=COLOURS["hdr"], lw=1.2, label="-I of HDR")
+        axis.plot(minutes, integrator, color=COLOURS["hdr"], lw=1.2, label="what HDR takes off (-I)")
         idle = track.evidence["attenuator"] <= 0
         limits = axis.get_ylim()
-        axis.fill_between(minutes, *limits, where=idle, color="#bbbbbb", alpha=0.35, lw=0, label="A = 0")
+        axis.fill_between(
+            minutes, *limits, where=idle, color="#bbbbbb", alpha=0.35, lw=0, label="HDR rests (A = 0)"
+        )
         axis.set_ylim(limits)
         entitle(axis, _walk(result))
-    label_edges(axes, "time walked (min)", "deg/s")
+    label_edges(axes, "time walked (min)", "drift (deg/s)")
     head(figure, _named(results, "what HDR takes for drift, and the true drift (mean of 25 strides)"), axes)
     return figure
 

@@ -33,16 +33,17 @@ def judging(result: Result) -> str | None:
 
 
 def evaluation(result: Result, title: str | None = None) -> Figure:
-    """Heading and E along one walk, as in Figure 7a of Deng et al. (2018); needs a method that has E.
+    """Heading, its error and E along one walk (Figure 7a of Deng et al. 2018); needs a method that has E.
 
-    Above the true heading and every method's; below E of Eq. 23, red where the heading was corrected.
+    Above the true heading and every method's, amid what they are off, below E of Eq. 23, red where the
+    heading was corrected.
     """
     method = judging(result)
     assert method is not None
     track, names = result.tracks[method], list(result.tracks)
     colours, widths = colours_of(names), widths_of(names)
-    figure, grid = new_figure(2, 1, 7.2, 4.6, sharex=True, height_ratios=[1.6, 1.0])
-    above, below = grid[:, 0]
+    figure, grid = new_figure(3, 1, 7.2, 6.0, sharex=True, height_ratios=[1.4, 1.2, 1.0])
+    above, amid, below = grid[:, 0]
     began = track.t[0]
     row = compare(track, result.walk)
     truth = np.degrees(track.heading - row.heading_error)
@@ -52,6 +53,9 @@ def evaluation(result: Result, title: str | None = None) -> Figure:
         true = np.interp(other.t, row.t, truth)
         line = true + np.degrees(off)
         above.plot(other.t - began, line, color=colours[name], lw=widths[name], label=label_of(name))
+        amid.plot(other.t - began, np.degrees(off), color=colours[name], lw=1.4)
+    amid.axhline(0, color="#222222", lw=0.8)
+    amid.set_ylabel("heading error (deg)")
     low, high = above.get_ylim()
     for quarter in range(int(np.floor(low / 90)), int(np.ceil(high / 90)) + 1):
         above.axhline(90 * quarter, color="#888888", lw=0.6, ls=":", zorder=0)

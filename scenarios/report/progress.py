@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -9,6 +11,9 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from footfall.scenarios.execute import Progress as Done
+
+LOG = logging.getLogger(__name__)
+_EVERY_S = 10.0  # between two lines of the log
 
 Show = Callable[[Done], None]
 Count = Callable[[int, int], None]  # how many are done, and how many there are
@@ -40,8 +45,10 @@ def watching(*labels: str) -> Iterator[tuple[Show, tuple[Count, ...]]]:
         lengths: list[float] = []
         latest: Done | None = None
 
+        told = 0.0
+
         def show(now: Done) -> None:
-            nonlocal latest
+            nonlocal latest, told
             if latest is not now:  # other trials than before
                 latest = now
                 lengths[:] = [trial.plan.route.length for trial in now.walks]
@@ -53,6 +60,11 @@ def watching(*labels: str) -> Iterator[tuple[Show, tuple[Count, ...]]]:
                 visible=True,
             )
             bars.update(tried, completed=now.done, total=now.trials, visible=True)
+            if now.done == now.trials or time.monotonic() - told > _EVERY_S:
+                told = time.monotonic()
+                what = "compiling, once; " if now.compiling else ""
+                numbers = sum(now.metres), sum(lengths), now.done, now.trials
+                LOG.info(what + "%.0f of %.0f m walked, %d of %d recordings navigated", *numbers)
 
         yield show, counts
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from footfall.shown import styled
 from footfall.tables import replacing
 
 if TYPE_CHECKING:
@@ -35,24 +36,16 @@ _LABELS = {
     "ihde": "IHDE",
     "ihde-plus": "IHDE+",
 }
-_STYLE: Any = {
-    "font.size": 9,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.alpha": 0.25,
-}
 
 
 def new_figure(
     rows: int, columns: int, width: float, height: float, **kwargs: Any
 ) -> tuple[Figure, np.ndarray]:
     """A figure in the house's style with (rows, columns) axes, drawn without a screen."""
-    import matplotlib as mpl
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    with mpl.rc_context(_STYLE):
+    with styled():
         figure = Figure(figsize=(width, height), layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.subplots(rows, columns, squeeze=False, **kwargs)
@@ -94,12 +87,16 @@ def head(figure: Figure, title: str, axes: Sequence[Axes]) -> None:
         for handle, label in zip(*axis.get_legend_handles_labels(), strict=True):
             entries.setdefault(label, handle)
     width = figure.get_figwidth()
+    columns = max(1, min(len(entries), int(width / 1.3)))
+    ordered = list(entries.items())
+    # Matplotlib fills column after column; people read row after row.
+    ordered = [ordered[i] for column in range(columns) for i in range(column, len(ordered), columns)]
     figure.legend(
-        list(entries.values()),
-        list(entries),
+        [handle for _, handle in ordered],
+        [label for label, _ in ordered],
         title=textwrap.fill(title, int(13 * width)),
         loc="outside upper left",
-        ncols=max(1, min(len(entries), int(width / 1.3))),
+        ncols=columns,
         alignment="left",
         frameon=False,
         fontsize=8,

@@ -1,4 +1,4 @@
-"""Libraries that only studies need: the extra `study`."""
+"""Libraries that only studies need: the extras `study` and `cluster`."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 from footfall.errors import InputError
 
 
-def needed(module: str) -> Any:
-    """A module of the extra `study`.
+def needed(module: str, extra: str = "study") -> Any:
+    """A module of an extra.
 
     Raises
     ------
@@ -22,5 +22,5 @@ def needed(module: str) -> Any:
         library = module.partition(".")[0]
         missing = f" ({error.name} is missing)" if error.name not in (module, library, None) else ""
         raise InputError(
-            f"this study needs {library}, which is not installed{missing}: pip install 'footfall[study]'"
+            f"this study needs {library}, which is not installed{missing}: pip install 'footfall[{extra}]'"
         ) from None

@@ -14,6 +14,7 @@ from footfall.scenarios.execute import CHUNK, cores, worker_pool
 from footfall.scenarios.studies.budget import Case, Surrogate, case_of
 from footfall.scenarios.trial import Trial, walk_of
 from footfall.scenarios.warm import warm
+from footfall.simulate.walk import Walk
 
 Lost = tuple[Trial, str]
 
@@ -31,7 +32,7 @@ def listened(
     workers : processes; one a core when None; 1 works in this process
     on_progress : called with how many trials are done, and how many there are
     """
-    jobs = list(_jobs(trials))
+    jobs = listening_jobs(trials)
     report = on_progress or (lambda done, all_: None)
     found: list[Case | Lost] = []
     count = min(workers or cores(), len(jobs))
@@ -48,7 +49,7 @@ def listened(
     return found
 
 
-def _jobs(trials: Sequence[Trial]) -> list[list[Trial]]:
+def listening_jobs(trials: Sequence[Trial]) -> list[list[Trial]]:
     """Neighbours on one walk, not too many at once."""
     jobs = []
     for _, group in groupby(trials, key=lambda trial: (trial.number, trial.walk_seed)):
@@ -63,6 +64,11 @@ def _job(trials: Sequence[Trial]) -> list[Case | Lost]:
         walk = walk_of(trials[0])
     except InputError as error:
         return [(trial, str(error)) for trial in trials]
+    return heard(trials, walk)
+
+
+def heard(trials: Sequence[Trial], walk: Walk) -> list[Case | Lost]:
+    """Trials on one walk, one after the other."""
     found: list[Case | Lost] = []
     for trial in trials:
         try:

@@ -12,12 +12,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from footfall.errors import InputError
 from footfall.scenarios.execute import telling, warm, worker_pool
+from footfall.scenarios.studies.queue import Job, Queue
 from footfall.scenarios.studies.task import Done, Task, do, do_walk, lost
 from footfall.simulate.cache import is_cached
 
@@ -26,48 +27,6 @@ _TRIES = 3  # of compiling
 _ENDED = InputError("its worker process was ended: killed, or out of memory")
 
 Tick = Callable[[Mapping[str, float], bool], None]
-
-
-@dataclass(frozen=True)
-class Job:
-    """A task, or the walk that it is the first on."""
-
-    task: Task
-    walks: bool = False
-
-
-class Queue:
-    """What is to be done, in an order in which a walk is walked before its tasks, and tasks go by walk."""
-
-    def __init__(self, tasks: Sequence[Task], walked: Callable[[str], bool]) -> None:
-        self._waiting: dict[str, list[Task]] = {}
-        for task in tasks:
-            self._waiting.setdefault(task.walk, []).append(task)
-        self._ready: deque[Task] = deque()
-        self._to_walk: deque[str] = deque()
-        for key in list(self._waiting):
-            if walked(key):
-                self.walked(key)
-            else:
-                self._to_walk.append(key)
-        self.walks = tuple(self._to_walk)
-
-    def __bool__(self) -> bool:
-        return bool(self._ready or self._to_walk)
-
-    def next(self) -> Job:
-        """A task that can be done now, or else the next walk."""
-        if self._ready:
-            return Job(self._ready.popleft())
-        return Job(self._waiting[self._to_walk.popleft()][0], walks=True)
-
-    def walked(self, key: str) -> None:
-        """A walk is there: its tasks can be done."""
-        self._ready.extend(self._waiting.pop(key))
-
-    def fell(self, key: str, error: InputError, stage: str = "walk") -> list[Done]:
-        """A walk came to no end: what that makes of its tasks."""
-        return [lost(task, error, stage) for task in self._waiting.pop(key)]
 
 
 def spread(
@@ -102,7 +61,7 @@ class _StoppedError(Exception):
 
 
 def _here(
-    queue: Queue, walks: Path | None, store: Path | None, stop: Callable[[], bool], tick: Tick
+    queue: Queue[Task], walks: Path | None, store: Path | None, stop: Callable[[], bool], tick: Tick
 ) -> Iterator[Done]:
     """In this process."""
     while queue and not stop():
@@ -126,7 +85,7 @@ def _here(
         if refused is None:
             queue.walked(key)
         else:
-            yield from queue.fell(key, refused)
+            yield from (lost(task, refused) for task in queue.fell(key))
 
 
 class _Pool:
@@ -135,7 +94,7 @@ class _Pool:
     def __init__(
         self,
         tasks: Sequence[Task],
-        queue: Queue,
+        queue: Queue[Task],
         workers: int,
         folders: tuple[Path | None, Path | None],
         stop: Callable[[], bool],
@@ -145,7 +104,7 @@ class _Pool:
         self._workers = min(workers, len(tasks))
         self._stop, self._tick = stop, tick
         self._at = {key: at for at, key in enumerate(queue.walks)}
-        self._suspects: deque[Job] = deque()  # in the making when a worker ended
+        self._suspects: deque[Job[Task]] = deque()  # in the making when a worker ended
         self._warm = 0  # tries, until it is done
 
     def run(self) -> Iterator[Done]:
@@ -172,7 +131,7 @@ class _Pool:
 
     def _work(self, pool: ProcessPoolExecutor, workers: int, metres: Any, *, alone: bool) -> Iterator[Done]:
         """Until nothing is left, whoever asked stops it, or a worker ends. Suspects go one by one."""
-        running: dict[Future[Any], Job] = {}
+        running: dict[Future[Any], Job[Task]] = {}
         ahead = 1 if alone else workers + 1  # so that nobody waits for the next one
         while True:
             broken = False
@@ -210,19 +169,20 @@ class _Pool:
                 self._suspects.extend(running.values())
                 return
 
-    def _submit(self, pool: ProcessPoolExecutor, job: Job) -> Future[Any]:
+    def _submit(self, pool: ProcessPoolExecutor, job: Job[Task]) -> Future[Any]:
         walks, store = self._folders
         if job.walks:
             return pool.submit(_walk_job, self._at[job.task.walk], job.task, walks)
         return pool.submit(do, job.task, walks, store)
 
-    def _ended(self, job: Job, result: Done | InputError | None) -> Iterator[Done]:
+    def _ended(self, job: Job[Task], result: Done | InputError | None) -> Iterator[Done]:
         if isinstance(result, Done):
             yield result
         elif result is None:
             self._queue.walked(job.task.walk)
         elif job.walks:
-            yield from self._queue.fell(job.task.walk, result, "worker" if result is _ENDED else "walk")
+            stage = "worker" if result is _ENDED else "walk"
+            yield from (lost(task, result, stage) for task in self._queue.fell(job.task.walk))
         else:
             yield lost(job.task, result, "worker")
 

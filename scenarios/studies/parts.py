@@ -205,6 +205,7 @@ class StudyFolder:
     def _rows_of(self, plan: Plan) -> Any:
         """The rows of a plan's tasks, of whatever parts, none twice."""
         there, found = self._by_task(), []
+        walks: dict[str, set[str]] = {}
         for task in plan.tasks:
             files = there.get(task.key, [])
             exact = [file for file in files if file.stem == task.name]
@@ -217,8 +218,15 @@ class StudyFolder:
                 else:
                     found.append(part.filter(pa.array([key in wanted for key in keys])))
                 wanted.difference_update(keys)
+                walks.setdefault(task.walk, {""}).update(pc.unique(part["walk_sha"]).to_pylist())
             if wanted:
                 raise InputError(f"rows of task {task.key} are missing: start the sweep again", self.path)
+            if len(walks[task.walk]) > 2:
+                raise InputError(
+                    f"rows of walk {task.walk_seed} are of walks that differ, made on different processors: "
+                    "start the sweep with --fresh",
+                    self.path,
+                )
         return pa.concat_tables(found)
 
 

@@ -92,6 +92,7 @@ class _Recorded:
 
     documents: Documents
     setup: Setup
+    content: str
     settings: dict[str, tuple[Documents, Setup, dict[str, Method]]] = field(default_factory=dict)
     meant: list[tuple[str, str, Mapping[str, Any]]] = field(default_factory=list)
 
@@ -172,14 +173,14 @@ def _recorded(
     for point in given:
         try:
             documents = study.valued(base, point.shared)
-            walked = digest_of(dict(documents.scenario.table))
+            walked = _hash(documents.scenario.table)
             if walked not in scenarios:
                 scenarios[walked] = build_scenario(documents.scenario)
             setup = documents.setup(scenarios[walked])
         except InputError as error:
             raise error.about(f"scenario {name}") if len(study.file.scenarios) > 1 else error from None
-        key = digest_of(walked, setup.imu, setup.spec, dict(setup.unit))
-        here = found.setdefault(key, _Recorded(documents, setup))
+        content = _content(setup)
+        here = found.setdefault(walked + content, _Recorded(documents, setup, content))
         reckoned = digest_of(setup.pdr, setup.guided, setup.directions)
         _, _, methods = here.settings.setdefault(reckoned, (replace(documents, methods=()), setup, {}))
         for method in study.methods:
@@ -209,7 +210,7 @@ def _add(
     """The tasks of what is recorded alike, beside those that are there, and what they are for."""
     table, setup = study.file.cases, recorded.setup
     every = cases(setup, **table.model_dump())
-    content = _content(setup)
+    content = recorded.content
     for walk in _by_walk(every):
         first = walk[0]
         scenario, walked = setup.scenario, walks.key(first)

@@ -17,11 +17,12 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.hdr.method import Method
 from footfall.scenarios.evaluate import cases
-from footfall.scenarios.execute import Progress, execute
+from footfall.scenarios.execute import Progress
 from footfall.scenarios.judge.bounds import quantile
 from footfall.scenarios.judge.gate import METRICS
 from footfall.scenarios.parameters import Documents, with_values
 from footfall.scenarios.studies.factors import Factor
+from footfall.scenarios.studies.spreading import Workers, perform_trials
 from footfall.scenarios.studies.study import CasesTable
 from footfall.scenarios.trial import Setup, Trial
 from footfall.settings import did_you_mean
@@ -93,7 +94,7 @@ def evaluate_points(
     metric: str,
     *,
     which: np.ndarray | None = None,
-    workers: int | None = None,
+    workers: Workers = None,
     store: Path | None = None,
     on_progress: Callable[[Progress], None] | None = None,
 ) -> Evaluated:
@@ -106,7 +107,7 @@ def evaluate_points(
     deal : the cases of a setup, in the same order for each
     metric : of `Score`; its size counts
     which : (p,) the one case of each point; all where None
-    workers, store, on_progress : as of `execute`
+    workers, store, on_progress : as of `perform_trials`
     """
     shared, methods = base.setup().scenario, base.methods
     own = [[_own(method, point) for point in points] for method in methods]
@@ -129,7 +130,7 @@ def evaluate_points(
     count = len(deal(base.setup())) if which is None else 1
     errors = np.full((len(methods), len(points), count), np.inf)
     failures: Counter[str] = Counter()
-    done = execute(trials, workers=workers, store=store, on_progress=on_progress)
+    done = perform_trials(trials, workers=workers, store=store, on_progress=on_progress)
     for outcome, (case, owners) in zip(done, told, strict=True):
         for row in outcome.rows:
             place, members = owners[row.method]

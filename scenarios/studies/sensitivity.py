@@ -19,9 +19,10 @@ from footfall.scenarios.studies.budget import Case
 from footfall.scenarios.studies.check import Check, check_points
 from footfall.scenarios.studies.indices import Index, Screened, Sobol, morris, morris_design, sobol_until
 from footfall.scenarios.studies.kept import Kept, made_of
-from footfall.scenarios.studies.listening import Heard, Lost, listened
+from footfall.scenarios.studies.listening import Heard, Lost
 from footfall.scenarios.studies.points import Evaluated, evaluate_points, over_cases, require_finite
 from footfall.scenarios.studies.sensitivity_file import UNIT, Study, read_study
+from footfall.scenarios.studies.spreading import Workers, listen_to
 from footfall.settings import did_you_mean
 
 Evaluate = Callable[[np.ndarray], np.ndarray]  # shares (p, factors) of the ranges -> scores (p, methods)
@@ -33,13 +34,13 @@ class Watch:
 
     Attributes
     ----------
-    workers : processes; one a core when None
+    workers : processes, one a core when None; or a cluster
     store : folder of footfalls (`footfall.scenarios.store`) and of what was evaluated (`studies.kept`)
     on_points, on_trials, on_cases : progress of points in full, of their trials, and of the budget's cases
     on_check : called with the check of the budget, before it is refused
     """
 
-    workers: int | None = None
+    workers: Workers = None
     store: Path | None = None
     on_points: Callable[[int, int], None] = field(default=lambda done, all_: None)
     on_trials: Callable[[Progress], None] | None = None
@@ -269,7 +270,7 @@ def _listened(study: Study, watch: Watch) -> list[Case | Lost]:
         raise InputError('the budget takes ranges, no lists: use fidelity = "full"', listed.address)
     _models(study, ())  # refused before anything is walked
     trials = study.file.cases.deal(study.base.setup())
-    heard = listened(trials, workers=watch.workers, on_progress=watch.on_cases)
+    heard = listen_to(trials, workers=watch.workers, on_progress=watch.on_cases)
     if not any(isinstance(one, Case) for one in heard):
         raise InputError(f"no case came to its end: {next(iter(_reasons(heard)))}")
     return heard

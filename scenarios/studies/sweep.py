@@ -13,22 +13,20 @@ from typing import Any
 from footfall.errors import InputError
 from footfall.scenarios.execute import cores
 from footfall.scenarios.store import footfalls_folder
+from footfall.scenarios.studies.cluster import Cluster
 from footfall.scenarios.studies.describe import write_document
 from footfall.scenarios.studies.local import spread
 from footfall.scenarios.studies.parts import StudyFolder
 from footfall.scenarios.studies.plan import Plan, plan_of, task_seconds, walk_seconds
+from footfall.scenarios.studies.spreading import spread_over
 from footfall.scenarios.studies.study import Study
-from footfall.scenarios.studies.task import DiskFullError, Done, Task, no_room
+from footfall.scenarios.studies.task import DiskFullError, Done, StoppedError, Task, no_room
 from footfall.scenarios.studies.tracks import write_tracks
 from footfall.simulate.cache import is_cached
 
 ALIKE = 20  # tasks, or walks, that all fail for one reason: nobody waits for the rest
 
 Executor = Callable[..., Iterator[Done]]
-
-
-class StoppedError(Exception):
-    """Something outside of the study ended it; it may be taken up where it was."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +59,7 @@ class Progress:
 def sweep(
     study: Study | Plan | str | os.PathLike[str],
     folder: str | os.PathLike[str] | None = None,
-    executor: int | Executor | None = None,
+    executor: int | Cluster | Executor | None = None,
     *,
     fresh: bool = False,
     retry_failed: bool = False,
@@ -69,16 +67,16 @@ def sweep(
     on_progress: Callable[[Progress], None] = lambda now: None,
     command: str = "",
 ) -> Iterator[Progress]:
-    """Do a study, or what is left of it.
+    """Run a study, or what is left of it.
 
     Parameters
     ----------
     study : or its name or file, or its plan
     folder : of its results; out/NAME when None
-    executor : processes, one a core when None; or what performs tasks elsewhere (as `local.spread`)
-    fresh : forget what is there
-    retry_failed : do again what has failed
-    stop : asked now and then; once it is true, tasks in the making are finished, and the rest is left
+    executor : processes, one a core when None; a cluster; or a callable as `local.spread`
+    fresh : delete what is there
+    retry_failed : run failed tasks again
+    stop : called now and then; once true, running tasks are finished, and the rest is left
     on_progress : called some times a second
     command : that makes the study again, for its document
 
@@ -91,7 +89,7 @@ def sweep(
     InputError
         The study cannot be, another sweep is at work in the folder, or all tasks fail for one reason.
     StoppedError
-        The disk is full.
+        The disk is full, or the cluster is gone.
     """
     if not isinstance(study, Study | Plan):
         study = Study.read(study)
@@ -117,7 +115,7 @@ def sweep(
 def _done(
     plan: Plan,
     place: StudyFolder,
-    executor: int | Executor | None,
+    executor: int | Cluster | Executor | None,
     stop: Callable[[], bool],
     on_progress: Callable[[Progress], None],
     command: str,
@@ -149,7 +147,9 @@ def _done(
     yield replace(watch.now, stage="finished", share=1.0)
 
 
-def _executor(given: int | Executor | None, tasks: Sequence[Task]) -> Executor:
+def _executor(given: int | Cluster | Executor | None, tasks: Sequence[Task]) -> Executor:
+    if isinstance(given, Cluster):
+        return spread_over(given)
     if callable(given):
         return given
     workers = given or cores()

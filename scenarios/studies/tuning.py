@@ -25,9 +25,9 @@ from footfall.scenarios.studies.budget import Case
 from footfall.scenarios.studies.extra import needed
 from footfall.scenarios.studies.factors import Factor, points_at
 from footfall.scenarios.studies.kept import Kept, made_of
-from footfall.scenarios.studies.listening import listened
 from footfall.scenarios.studies.map import is_compiled, mapped
 from footfall.scenarios.studies.points import evaluate_points, over_cases
+from footfall.scenarios.studies.spreading import Workers, listen_to
 from footfall.scenarios.studies.tuning_file import Tuning, read_tuning
 from footfall.scenarios.trial import Setup, Trial
 
@@ -80,7 +80,7 @@ class Tuned:
 def tuned(
     study: str | os.PathLike[str] | Tuning,
     *,
-    workers: int | None = None,
+    workers: Workers = None,
     folder: Path | None = None,
     **changes: Any,
 ) -> Tuned:
@@ -103,7 +103,7 @@ def tuned(
 def perform_tuning(
     tuning: Tuning,
     *,
-    workers: int | None = None,
+    workers: Workers = None,
     folder: Path | None = None,
     on_cases: Callable[[int, int], None] | None = None,
     on_trials: Callable[[Progress], None] | None = None,
@@ -113,7 +113,7 @@ def perform_tuning(
 
     Parameters
     ----------
-    workers : processes; one a core when None
+    workers : processes, one a core when None; or a cluster
     folder : where sets that were tried are kept, and found again; footfalls, too
     on_cases, on_trials, on_tried : progress of cases heard, of trials, and of sets tried
 
@@ -171,11 +171,11 @@ def _short(point: Point) -> dict[str, Any]:
     }
 
 
-def _compiled(tuning: Tuning, workers: int | None, on_cases: Callable[[int, int], None] | None) -> Errors:
+def _compiled(tuning: Tuning, workers: Workers, on_cases: Callable[[int, int], None] | None) -> Errors:
     addresses = [factor.address for factor in tuning.factors]
     trials = (*tuning.train, *tuning.test)
     heard = dict(
-        zip(map(_case, trials), listened(trials, workers=workers, on_progress=on_cases), strict=True)
+        zip(map(_case, trials), listen_to(trials, workers=workers, on_progress=on_cases), strict=True)
     )
     lost = [one for one in heard.values() if not isinstance(one, Case)]
     if len(lost) == len(heard):
@@ -196,7 +196,7 @@ def _case(trial: Trial) -> tuple[int, int, int]:
 
 def _in_full(
     tuning: Tuning,
-    workers: int | None,
+    workers: Workers,
     folder: Path | None,
     on_trials: Callable[[Progress], None] | None,
 ) -> Errors:

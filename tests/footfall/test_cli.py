@@ -5,6 +5,7 @@ import pytest
 import typer
 
 from footfall.cli.app import app
+from footfall.errors import InputError
 from footfall.hdr.methods import METHODS
 from footfall.models.imu import EFFECTS, stock_specs
 from footfall.recording import read_recording
@@ -30,6 +31,11 @@ def test_every_command_explains_itself_and_each_of_its_arguments(cli, name):
         if parameter.name != "help":
             assert len(parameter.help.split()) >= 3, parameter.name
             assert parameter.name in out or any(option in out for option in parameter.opts)
+
+
+@pytest.mark.parametrize(("name", "text"), [("run", "[set]"), ("map", "[set]"), ("tune", "[study]")])
+def test_brackets_of_a_help_text_are_shown_and_are_no_style(cli, name, text):
+    assert text in cli(f"{name} --help")[1]
 
 
 def test_without_a_command_it_shows_them_all(cli):
@@ -79,6 +85,47 @@ def test_a_walk_is_written_with_its_footfalls(cli, here):
     assert (first.meta["subject"], first.meta["seed"], first.meta["rate_hz"]) == ("reference", 3, 200)
     # The heel's IMU leans the other way.
     assert np.sign(walk.accel[0, 0]) == -np.sign(first.accel[0, 0])
+
+
+def test_a_seed_draws_the_path_too(cli, here, monkeypatch):
+    asked = []
+
+    def walked(plan, **_):
+        asked.append(plan)
+        raise InputError("enough")
+
+    monkeypatch.setattr("footfall.simulate.cache.cached_walk", walked)
+    for options in ("--number 4", "--seed 4", "--number 4 --seed 4", ""):
+        assert cli(f"walk rooms {options} -o walk.parquet")[0] == 2
+    assert [plan.seed for plan in asked] == [4, 4, 4, 1]
+    ends = [round(plan.route.length, 6) for plan in asked]
+    assert ends[0] == ends[1] == ends[2] != ends[3]
+
+
+def test_several_mounts_are_one_walk_in_a_file_each(cli, here):
+    code, out, err = cli("walk short.toml --mount instep,heel,instep-left -o w.parquet")
+    assert (code, out) == (0, "")
+    instep, heel, left = (read_walk(f"w-{name}.parquet") for name in ("instep", "heel", "instep-left"))
+    assert [line.rpartition(" ")[2] for line in err.splitlines()] == [
+        f"w-{name}.parquet" for name in ("instep", "heel", "instep-left")
+    ]
+    assert not (here / "w.parquet").exists()
+    np.testing.assert_array_equal(instep.gyro, read_walk("walk.parquet").gyro)
+    np.testing.assert_array_equal(heel.contact, instep.contact)  # the same steps to the last bit
+    # Both sit on one foot: their distance does not change, up to where each is in the room.
+    apart = np.linalg.norm(heel.position - instep.position, axis=1)
+    np.testing.assert_allclose(apart, np.hypot(0.135, 0.02), atol=1e-6)
+    # The other foot stands while this one swings.
+    assert not (left.stance & instep.stance)[len(left.t) // 2 :][: len(left.t) // 4].all()
+    assert np.abs(left.position[0, 1] - instep.position[0, 1]) > 0.1
+
+
+def test_one_unknown_mount_among_several_writes_nothing(cli, here):
+    before = set(here.iterdir())
+    code, _, err = cli("walk short.toml --mount instep,hel -o w.parquet")
+    assert code == 2
+    assert "--mount 'hel' is unknown; did you mean heel" in err
+    assert set(here.iterdir()) == before
 
 
 def test_seeds_make_walks(cli, here):

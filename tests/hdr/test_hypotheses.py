@@ -102,6 +102,26 @@ def test_the_start_heading_turns_all_and_changes_nothing(method):
 
 
 @BOTH
+def test_a_known_direction_tells_the_drift_from_the_first_street_on(method):
+    """Half a street: where its direction is learned, where it began and how fast it drifts stay mixed."""
+    drift, building = 0.3 * DEG, 30 * DEG
+    walked = turned(feet(np.zeros(16), drift), building + 90 * DEG)
+    known = HypothesesParams(reference=building, bias=0.3 * DEG, along_first=0.9, beside=0.3 * DEG)
+    off = [
+        np.abs(error(walked, method(walked, params), drift)).mean()
+        for params in (known, replace(known, reference=None))
+    ]
+    assert off[0] < 0.7 * off[1]
+
+
+@BOTH
+def test_a_known_direction_of_another_building_costs_little(method):
+    walked = feet(BLOCK, 0.05 * DEG)
+    wrong = HypothesesParams(reference=35 * DEG)
+    assert np.abs(error(walked, method(walked, wrong), 0.05 * DEG))[20:].mean() < 1.5 * DEG
+
+
+@BOTH
 def test_left_is_as_right(method):
     walked = varied()
     left, right = method(walked, FEW), method(turned(walked, 0.0, mirror=True), FEW)

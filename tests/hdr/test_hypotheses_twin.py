@@ -1,5 +1,7 @@
 """The compiled beam and smoother against the same in matrices."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -20,6 +22,7 @@ from footfall.hdr.hypotheses._sight import COURSE, DISTANCE, JUMP, LOAD, REST, R
 from footfall.hdr.hypotheses.filter import rows_of
 from footfall.hdr.hypotheses.params import HypothesesParams
 from tests.hdr.test_hypotheses import varied
+from tests.helpers.drifting_feet import DEG
 
 PARAMS = HypothesesParams(hypotheses=32)
 
@@ -37,8 +40,9 @@ def test_the_rows_hold_everything_that_there_is(rows):
     assert (rows[-1, LOAD:JUMP] != 0).sum() >= 2
 
 
-def test_the_beam_equals_its_twin(rows):
-    c = PARAMS.constants
+@pytest.mark.parametrize("reference", [None, 100 * DEG], ids=["learned", "known"])
+def test_the_beam_equals_its_twin(rows, reference):
+    c = replace(PARAMS, reference=reference).constants
     told, history, _ = _beam.beam(rows, c, True)
     twin = _plain.PlainBeam(c)
     for i in range(1, len(rows)):
@@ -58,7 +62,7 @@ def test_the_smoother_equals_rauch_tung_striebel(rows):
     modes[20:22], modes[45:70], entries[45], habits[22:] = TURN, CURVE, GENTLE, 2
     modes[10:15] = CURVE
     entries[22] = entries[70] = ALIGNED
-    drift, variance = _smooth.smooth(rows, c, modes, habits, entries, c.scales[0], CURVE, 1)
+    drift, variance = _smooth.smooth(rows, c, modes, habits, entries, c.scales[0], CURVE, 1, False)
 
     before = _plain.first(c, rows[1, COURSE])
     start = next(o for o in before if (o.mode, o.habit, o.scale) == (CURVE, 1, 0))

@@ -14,13 +14,13 @@ def study(name="small", **table):
     return Study(name, base | {"cases": {"walks": 1, "units": 3}} | table)
 
 
-def pretend(task, error="", failing=lambda row: False):
+def pretend(task, error="", failing=lambda row: False, walk="walk"):
     """What a task might give: numbers of its seeds and cells alone."""
     rows, keys = [], []
     for trials, cells in task.trials():
         for trial, own in zip(trials, cells, strict=True):
             for cell in own:
-                row = blank_row(trial, "reference", "walk")
+                row = blank_row(trial, "reference", walk)
                 rng = np.random.default_rng([trial.unit_seed, int(cell.key[:8], 16)])
                 score = Score(*(float(value) for value in rng.random(6)))
                 given = {"method": cell.method.name, "recording_sha": "recording"}

@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 
 from footfall.scenarios.judge.papers import IHDE_TABLE_2, range_text
-from footfall.scenarios.judge.score import Score
+from footfall.scenarios.judge.score import Score, compare
 from footfall.scenarios.report.figures import heading_errors, maps
 from footfall.scenarios.report.heading_figures import evaluation, heading_figures, judging
 from footfall.scenarios.report.style import colours_of
@@ -77,10 +77,13 @@ def test_ranges_read_as_in_the_paper():
 
 def test_heading_and_evaluation_are_drawn_as_they_are(walked):
     figure = evaluation(walked)
-    above, below = figure.axes
+    above, amid, below = figure.axes
     track = walked.tracks["ihde"]
     drawn = {line.get_label(): line.get_xydata() for line in [*above.lines, *below.lines]}
     np.testing.assert_allclose(drawn["IHDE"][:, 1], np.degrees(track.heading), atol=1e-6)
+    for name, line in zip(walked.tracks, amid.lines, strict=False):
+        off = np.degrees(compare(walked.tracks[name], walked.walk).heading_error)
+        np.testing.assert_allclose(line.get_ydata(), off)
     both = np.vstack([drawn["E, heading corrected"], drawn["E, left alone"]])
     order = np.argsort(both[:, 0])
     np.testing.assert_allclose(both[order, 1], track.evidence["evaluation"])

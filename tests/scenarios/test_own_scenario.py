@@ -12,14 +12,13 @@ import pytest
 from footfall.errors import InputError
 from footfall.models.imu import TemperatureProfile, load_spec
 from footfall.models.imu.spec import SHEETS
+from footfall.scenarios.on_the_way import PaceTable, StopTable
 from footfall.scenarios.parameters import documents, with_values
 from footfall.scenarios.scenario import (
     STOCK,
     DisturbanceTable,
     GaitTable,
-    PaceTable,
     SensorTable,
-    StopTable,
     build_scenario,
     load_scenario,
     read_document,

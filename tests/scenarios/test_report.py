@@ -16,6 +16,7 @@ from footfall.scenarios.judge.score import Score, mean_score
 from footfall.scenarios.judge.statistics import extent, running_mean, spread
 from footfall.scenarios.report import figures
 from footfall.scenarios.report.document import run_document
+from footfall.scenarios.report.style import head, new_panels
 from footfall.scenarios.report.tables import paper_table, path_line, run_report
 from footfall.scenarios.run import parts, perform_run
 from footfall.scenarios.scenario import build_scenario, load_scenario
@@ -138,8 +139,8 @@ def test_other_noises_are_told_by_walk_and_of_the_mean(walked):
     """Median and extent over the noises; of the mean over the walks, not the mean of medians."""
     results = several(walked, 3)
     text = printed(*run_report("short", results))
-    assert "through 3 other noises each" in text
-    rows = [line.split() for line in text[text.index("3 other noises") :].splitlines()]
+    assert "with 3 other noise seeds each" in text
+    rows = [line.split() for line in text[text.index("3 other noise seeds") :].splitlines()]
     found = {(row[0], row[1]): row[2:] for row in rows if row[1:2] in (["pdr"], ["hdr"])}
     for walk, (median, low, high) in {
         "1": (2.0, 1.0, 9.0),
@@ -261,6 +262,39 @@ def test_every_line_is_in_the_legend_once(walked):
     assert labels == ["PDR", "PDR + HDR", "PDR + basic HDR", "theirs", "mine", "truth", "start"]
     lines = [line for line in figure.axes[0].lines if line.get_label() in labels]
     assert len({line.get_color() for line in lines if line.get_label() not in ("truth", "start")}) == 5
+
+
+def test_a_legend_is_read_row_after_row():
+    figure, (axis,) = new_panels(1, 4.0, 3.0)
+    names = [f"line {i}" for i in range(7)]
+    for name in names:
+        axis.plot([0, 1], label=name)
+    head(figure, "seven", [axis])
+    figure.canvas.draw()
+    places = {text.get_text(): text.get_window_extent() for text in figure.legends[0].get_texts()}
+    assert sorted(places, key=lambda name: (-round(places[name].y0), places[name].x0)) == names
+    assert len({round(place.y0) for place in places.values()}) > 1
+
+
+def test_maps_of_one_scenario_have_one_scale(walked):
+    figure = figures.maps(several(walked, 3))
+    assert len({(*axis.get_xlim(), *axis.get_ylim()) for axis in figure.axes}) == 1
+    low, high = figure.axes[0].get_xlim()
+    for line in (line for axis in figure.axes for line in axis.lines):
+        assert low < line.get_xdata().min() <= line.get_xdata().max() < high
+
+
+def test_walks_are_told_apart_by_colour_and_by_dashes(walked):
+    lines = figures.heading_errors(several(walked, 4)).axes[0].lines[:4]
+    assert len({line.get_color() for line in lines}) == 4
+    assert len({line.get_linestyle() for line in lines}) == 4
+
+
+def test_the_rate_that_is_judged_has_a_panel_of_its_own(walked):
+    above, below = figures.filtered_rates([walked]).axes
+    assert len(above.lines) == len(below.lines) + 2
+    np.testing.assert_array_equal(above.lines[2].get_ydata(), below.lines[0].get_ydata())
+    assert np.ptp(below.get_ylim()) < np.ptp(above.get_ylim())
 
 
 def test_small_causes_are_pooled_and_the_sum_is_the_sum(walked):

@@ -18,6 +18,8 @@ from footfall.models.route import Ground
 from footfall.simulate.draw import SIDE_VIEW, Stage, has_screen
 from footfall.simulate.episode import Episode
 from footfall.simulate.plan import Plan
+from footfall.simulate.render import _timed
+from footfall.simulate.signals import signal_panels
 from footfall.simulate.walker.walkers import N_ACTION
 from tests.helpers.commands import expect_one_sentence
 
@@ -48,6 +50,38 @@ def test_a_strip_shows_a_walker_that_moves(tmp_path: Path) -> None:
     thirds = np.array_split(dark, 3, axis=1)
     assert all(part.sum() > 500 for part in thirds)
     assert not np.array_equal(thirds[0][:, :200], thirds[1][:, :200])
+
+
+def test_signals_run_beside_a_moving_picture(tmp_path: Path) -> None:
+    result = draw(tmp_path / "walk.webp", "--seconds", "0.6", "--signals")
+    assert result.returncode == 0, result.stderr
+    with Image.open(tmp_path / "walk.webp") as clip:
+        assert (clip.n_frames, clip.size) == (20, (980, 420))
+
+
+def test_the_panel_uncovers_what_the_imu_says() -> None:
+    """An IMU that turns about z at 90 deg/s and rests otherwise; pictures of 10 of its 12 control steps."""
+    t = 1e-3 * np.arange(12 * 30)
+    half = np.radians(90) * t / 2
+    pose = np.column_stack([np.zeros((len(t), 3)), np.cos(half), 0 * t, 0 * t, np.sin(half)])
+    panels = signal_panels(list(pose.reshape(12, 30, 7)), 10, 560, 420)
+    assert [panel.shape for panel in panels] == [(420, 560, 3)] * 10
+    below = [panel[70:200, :400].astype(int) for panel in panels]  # of the legend
+    coloured = [np.flatnonzero((np.ptp(panel, axis=2) > 60).any(axis=0)) for panel in below]
+    ends = [columns.max() for columns in coloured[:6]]
+    assert (np.diff(ends) > 10).all()  # each control step shows some more
+    # z turns to the left: its line is above that of x and y, which do not turn.
+    middle = panels[-1][:200, 300].astype(int)
+    of_z = np.flatnonzero(middle[:, 2] - middle[:, 0] > 60)
+    others = np.flatnonzero(middle[:, 1] - middle[:, 2] > 40)
+    assert of_z.max() < others.min()
+
+
+def test_times_stand_at_the_head_of_a_strip() -> None:
+    strip = Image.new("RGB", (7 * 240, 420), "white")
+    head = np.asarray(_timed(strip, 7).convert("L"))[:44]
+    dark = [(part < 128).sum() for part in np.array_split(head, 7, axis=1)]
+    assert min(dark) > 30
 
 
 def test_a_moving_picture_has_frames(tmp_path: Path) -> None:

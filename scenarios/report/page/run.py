@@ -304,7 +304,7 @@ def _scores(told: Mapping[str, Any], rows: Sequence[Mapping[str, Any]], methods:
         ("other_units", "{} other units of the same sheet on the same walks", ("mean", "median", "p90")),
         (
             "other_noises",
-            "Mean over the walks, heard through {} other noises",
+            "Mean over the walks, with {} other noise seeds",
             ("median", "smallest", "largest"),
         ),
     ):

@@ -49,7 +49,7 @@ def test_what_differs_in_the_method_alone_is_recorded_once(base, monkeypatch):
         seen.extend(trials)
         return iter(())
 
-    monkeypatch.setattr(studied, "execute", execute)
+    monkeypatch.setattr(studied, "perform_trials", execute)
     monkeypatch.setattr(studied, "TOGETHER", 3)
     points = [{TAU: float(tau)} for tau in range(1, 6)] + [{FLICKER: 9.0}, {TAU: 1.0}]
     with pytest.raises(ValueError, match="longer"):

@@ -12,7 +12,8 @@ from footfall.scenarios.studies import sweep as sweeping
 from footfall.scenarios.studies.parts import StudyFolder
 from footfall.scenarios.studies.plan import plan_of
 from footfall.scenarios.studies.rows import read_rows
-from footfall.scenarios.studies.sweep import StoppedError, sweep
+from footfall.scenarios.studies.sweep import sweep
+from footfall.scenarios.studies.task import StoppedError
 from tests.helpers.study import Pretending, pretend, study
 
 AXES = {"imu": ["nimu", "mtig710"], "hdr.theta_w_deg_s": [0.1, 0.2], "pdr.tilt_gain": [0.1, 0.2]}
@@ -115,6 +116,13 @@ def test_a_changed_study_keeps_the_parts_that_still_belong_to_it(tmp_path):
     assert done(small(), tmp_path / "one")[1] == 0
     done(small(), tmp_path / "calm")
     assert content(tmp_path / "one") == content(tmp_path / "calm")
+
+
+def test_rows_of_one_walk_that_was_walked_to_two_ends_are_refused(tmp_path):
+    done(small(), tmp_path, Pretending(1))
+    with pytest.raises(InputError, match=r"rows of walk \d+ are of walks that differ.*--fresh"):
+        done(small(), tmp_path, Pretending(walk="of another processor"))
+    assert done(small(), tmp_path, fresh=True)[0].stage == "finished"
 
 
 def test_half_a_part_under_its_final_name_is_told_and_made_again(tmp_path):
