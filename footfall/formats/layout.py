@@ -142,6 +142,11 @@ def csv(header: Header) -> list[Layout]:
     """
     names = header.names
     numbered = {match[1] for name in names if (match := re.search(r"\[(\d)\]$", name.strip()))}
+    numbered |= {
+        match[2]
+        for name in names
+        if (match := re.fullmatch(r"([A-Za-z]+)_?(\d)", name.strip())) and understood(f"{match[1]}_x")
+    }
     first = 1 if "3" in numbered and "0" not in numbered else 0
     groups: dict[str, _Group] = {}
     times: dict[str, tuple[str, Named]] = {}

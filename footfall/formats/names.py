@@ -15,15 +15,15 @@ from footfall.formats.units import INCREMENTS, unit_size
 AXES = ("x", "y", "z")
 _QUANTITIES = {
     "gyro": "gyroscope gyro gyros gyr angularrate angularvelocity angularspeed angvel angrate rotationrate "
-    "rateofturn turnrate rotation omega as w g",
+    "rateofturn turnrate rotation omega drehrate winkelgeschwindigkeit gyroskop as w g",
     "accel": "accelerometer accelerometers accel acceleration accelerations acc specificforce "
     "totalacceleration linearacceleration useracceleration accelerometeracceleration linearaccel lacc force "
-    "gf a f",
+    "beschleunigung beschl gf a f",
     "gyro increment": "deltatheta deltaangle dtheta dangle thetainc angleinc",
     "accel increment": "deltav deltavelocity deltavel dvel dv velinc velocityincrement",
 }
 _WORDS = {word: quantity for quantity, words in _QUANTITIES.items() for word in words.split()}
-_TIME = {"t", "time", "timestamp", "timestamps", "stamp", "ts", "epoch", "epoc", "elapsed", "clock"}
+_TIME = {"t", "time", "timestamp", "timestamps", "stamp", "ts", "epoch", "epoc", "elapsed", "clock", "zeit"}
 # Words beside the quantity that change nothing, or tell how good it is: the lower the better.
 _PLAIN = {
     *("cal", "calibrated", "scaled", "comp", "data", "value", "values", "axis", "sensor", "field", "field's"),
@@ -99,7 +99,7 @@ def understood(name: str, first: int = 0) -> Named | None:
 def _words(text: str) -> list[str]:
     text = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])|(?<=[a-z]{3})(?=\d+$)", " ", text)
     found: list[str] = []
-    for word in re.findall(r"[a-z0-9°']+", text.lower()):
+    for word in re.findall(r"[a-z0-9°']+", text.lower().replace("ω", "w")):
         # "gx", "accy" and "zgyro" are two words.
         if word[-1] in AXES and word[:-1] in _WORDS:
             found += [word[:-1], word[-1]]
@@ -185,7 +185,9 @@ def _sensor(before: list[str], after: list[str]) -> str:
 def _timed(words: list[str], stated: str | None) -> Named | None:
     places = [place for place, word in enumerate(words) if word in _TIME]
     if not places:
-        return None
+        # A unit alone, "ms": a single s may be anything.
+        alone = unit_size("t", words[0]) if len(words) == 1 and len(words[0]) > 1 and stated is None else None
+        return None if alone is None else Named("t", alone, rank=2)
     size = None if stated is None else unit_size("t", stated)
     last, rank, sensor = places[-1], 1, []
     for place, word in enumerate(words):

@@ -20,6 +20,7 @@ from footfall.tables import numbers
 pa, pa_csv = late("pyarrow"), late("pyarrow.csv")
 
 BLOCK_BYTES = 1 << 22
+SHOWN = 40  # letters of a cell in a message
 MOST_BAD = 0.01  # share of rows or cells that a recorder may spoil; more, and the file is another one
 _EMPTY = ["", "-", "--", "?", "NaN", "nan", "NAN", "-nan", "-NaN", "NA", "N/A", "n/a", "#N/A", "#NA", "NULL",
           "null", "None", "none", "nil", "undefined", "*"]  # fmt: skip
@@ -130,7 +131,7 @@ class TextTable:
             for name, cells in bad.items():
                 if len(cells) > most:
                     raise InputError(
-                        f"column {name!r} holds {cells[0]!r}, expected numbers", self.content.path
+                        f"column {name!r} holds {_short(cells[0])}, expected numbers", self.content.path
                     )
 
         for batch in self._batches(convert, pa.string(), self.rows):
@@ -139,7 +140,7 @@ class TextTable:
         judge(max(3, MOST_BAD * self.rows))
         first = next(iter(bad.values()))[0]
         count = max(map(len, bad.values()))
-        self.notes.append(f"{count} rows hold no numbers, the first of them {first!r}: lost samples")
+        self.notes.append(f"{count} rows hold no numbers, the first of them {_short(first)}: lost samples")
 
     def _opened(self) -> IO[bytes]:
         file: Any = self.content.at.open("rb")
@@ -225,3 +226,9 @@ def row_bytes(head: bytes, dialect: Dialect) -> int:
 
 
 __all__ = ["TextTable", "floats", "row_bytes", "split"]
+
+
+def _short(cell: str) -> str:
+    """A cell, quoted: what a logger leaves in it may be kilobytes."""
+    text = repr(cell)
+    return text if len(text) <= SHOWN else text[:SHOWN] + "..."

@@ -57,7 +57,7 @@ def test_recordings_are_found_with_their_footprints(folder):
 def test_it_measures_prints_and_fills_its_page(folder, tmp_path, capsys, monkeypatch):
     kept = {name: real_recordings.METHODS[name] for name in ("pdr", "hdr", "iez")}
     monkeypatch.setattr(real_recordings, "METHODS", kept)
-    few = {name: real_recordings.DETECTORS[name] for name in ("threshold", "shoe")}
+    few = {name: real_recordings.DETECTORS[name] for name in ("threshold", "shoe", "patient")}
     monkeypatch.setattr(real_recordings, "DETECTORS", few)
     page, figure, out = tmp_path / "page.md", tmp_path / "tracks.png", tmp_path / "out.json"
     marks = ("recordings", "targets", "methods", "detectors pdr", "detectors iez", "strides", "mechanics")

@@ -48,7 +48,7 @@ OTHERS = {
     "kubectl",
 }
 # They run here: what they need is made by others before them, and takes no walk.
-RUN = {"list", "parameters", "record", "track", "score", "export"}
+RUN = {"list", "parameters", "sample", "inspect", "record", "track", "score", "export"}
 # Python of which a page shows a part, or what only another project has; the first line of each, and which
 # test holds it.
 SHOWN = {

@@ -63,6 +63,12 @@ NAMES = {
     "#timestamp [ns]": ("t", 1e-9, ""),
     "SampleTimeFine": ("t", None, ""),
     "Temperature (°C)": ("temperature", 1.0, ""),
+    "ω_x (°/s)": ("gyro_x", DEG, ""),
+    "ms": ("t", 1e-3, ""),
+    "Zeit (s)": ("t", 1.0, ""),
+    "Beschl X": ("accel_x", None, ""),
+    "Beschleunigung y (m/s^2)": ("accel_y", 1.0, ""),
+    "Drehrate z": ("gyro_z", None, ""),
 }
 
 
@@ -87,6 +93,15 @@ def test_other_names_are_none(name):
 
 def layouts(names, **header):
     return find_layouts("a.csv", Header(names, **header), "auto")
+
+
+@pytest.mark.parametrize("names", ["gyro{} accel{}", "Gyro_{} Acc_{}", "gyr[{}] acc[{}]"])
+def test_axes_numbered_from_one_and_from_nought(names):
+    for first in (0, 1):
+        columns = ["t", *(one.format(first + i) for one in names.split() for i in range(3))]
+        (found,) = layouts(columns)
+        assert [found.columns[f"gyro_{axis}"] for axis in "xyz"] == columns[1:4]
+        assert [found.columns[f"accel_{axis}"] for axis in "xyz"] == columns[4:]
 
 
 def six(gyro, accel):

@@ -222,6 +222,9 @@ KINDS = {
     b"\x80\x04\x95": "a Python pickle, which is never opened",
     b"\x93NUMPY": "a NumPy array",
     b"%PDF-1.7": "a PDF document",
+    b'[{"t": 0, "gx": 1}]': "a JSON document",
+    b'{\n"t": [0], "gx": [1]}': "a JSON document",
+    b"<!DOCTYPE html><table>": "a page of HTML or XML",
     b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1": "an Excel workbook",
     b"": "empty",
     b"just words\nand more of them\n": "no table of numbers",
@@ -233,6 +236,15 @@ def test_a_file_of_another_kind_is_told_as_what_it_is(tmp_path, head):
     (tmp_path / "a.csv").write_bytes(head + (b"\x00" * 50 if head[:1] in b"\x80\x93\xd0" and head else b""))
     with pytest.raises(InputError, match=KINDS[head]):
         read(tmp_path / "a.csv")
+
+
+def test_a_long_cell_that_is_no_number_is_cut_short_where_it_is_told(foot, tmp_path):
+    """A logger that lost its power leaves zeros."""
+    text = table(foot)
+    (tmp_path / "a.csv").write_text(text[:60000] + "\0" * 512 + text[60000:])
+    _, findings = read(tmp_path / "a.csv")
+    (told,) = [one for one in findings.sentences() if "no numbers" in one]
+    assert len(told) < 120
 
 
 def test_what_is_no_file_is_told_as_what_it_is(tmp_path):

@@ -1,0 +1,347 @@
+"""Files as programs and apps write them: the names, preambles, units and clocks that are theirs."""
+
+import struct
+import zipfile
+
+import numpy as np
+import pytest
+
+from footfall.conventions import GRAVITY
+from footfall.formats import read
+from footfall.formats.options import Reading
+from tests.footfall.test_text_tables import DEG, foot, iso, same
+
+__all__ = ["foot"]
+
+NS = 1_700_000_000_000_000_000
+
+
+def lines(foot, cells, head=(), joint=","):
+    """A text: the head's lines, then `cells(t, gyro, accel)` a row."""
+    body = (joint.join(cells(*row)) for row in zip(foot.t, foot.gyro, foot.accel, strict=True))
+    return "\n".join([*head, *body]) + "\n"
+
+
+def numbers(*values, places=6):
+    return [f"{value:.{places}f}" for value in np.concatenate(values)]
+
+
+def witmotion_bluetooth(foot):
+    """Bluetooth sensors' app: tabs, a sensor's name in each row, times of day."""
+    head = ["DeviceName\ttime\tAccX(g)\tAccY(g)\tAccZ(g)\tAsX(°/s)\tAsY(°/s)\tAsZ(°/s)\tAngleX(°)\tAngleY(°)"]
+    return lines(
+        foot,
+        lambda t, w, f: ["WT901(c1)", iso(t, " ")[:-3], *numbers(f / GRAVITY, w / DEG), "0.1", "0.2"],
+        head,
+        "\t",
+    )
+
+
+def witmotion_usb(foot):
+    """The PC program: a line with the start, then blanks between columns."""
+    head = [
+        "StartTime: 2024-02-29 23:59:50.000",
+        "address Time(s) ax(g) ay(g) az(g) wx(deg/s) wy(deg/s) wz(deg/s) AngleX(deg) AngleY(deg) T(°)",
+    ]
+    return (
+        lines(
+            foot,
+            lambda t, w, f: ["0x50", f"{t:.3f}", *numbers(f / GRAVITY, w / DEG), "1", "2", "25.1"],
+            head,
+            "\t",
+        )
+        .replace("address Time(s) ", "address\tTime(s)\t")
+        .replace(") ", ")\t")
+    )
+
+
+def shimmer(foot):
+    """Consensys: sep=, names, units, tabs; wide range beside low noise, which ends at 2 g."""
+    names = ["Timestamp_Unix_CAL", *(f"Accel_WR_{a}_CAL" for a in "XYZ")]
+    names += [*(f"Accel_LN_{a}_CAL" for a in "XYZ"), *(f"Gyro_{a}_CAL" for a in "XYZ"), "Battery_CAL"]
+    units = ["ms", *["m/(s^2)"] * 6, *["deg/s"] * 3, "mV"]
+    head = ["sep=\t", "\t".join(f"Shimmer_8A2F_{name}" for name in names), "\t".join(units)]
+    return lines(
+        foot,
+        lambda t, w, f: [
+            f"{1.7e12 + 1000 * t:.3f}",
+            *numbers(f, np.clip(f, -19.6, 19.6) + 0.3, w / DEG),
+            "4012.5",
+        ],
+        [head[0], head[1] + "\t", head[2] + "\t"],
+        "\t",
+    )
+
+
+def physics_toolbox(foot):
+    return lines(
+        foot,
+        lambda t, w, f: [f"{t:.4f}", *numbers(f / GRAVITY, w), "12.1", "-3.2", "40.0"],
+        ["time,gFx,gFy,gFz,wx,wy,wz,Bx,By,Bz"],
+    )
+
+
+def physics_toolbox_clock(foot):
+    """With the time of day, and semicolons with decimal commas as phones of half of Europe write."""
+    return lines(
+        foot,
+        lambda t, w, f: [cell.replace(".", ",") for cell in [f"{t:.4f}", *numbers(f / GRAVITY, w, [0.0])]],
+        ["time;gFx;gFy;gFz;wx;wy;wz;TgF"],
+        ";",
+    )
+
+
+def euroc(foot):
+    axes = [f"w_RS_S_{a} [rad s^-1]" for a in "xyz"] + [f"a_RS_S_{a} [m s^-2]" for a in "xyz"]
+    return lines(
+        foot,
+        lambda t, w, f: [str(NS + round(1e9 * t)), *numbers(w, f, places=9)],
+        ["#timestamp [ns]," + ",".join(axes)],
+    ).replace("\n", "\r\n")
+
+
+def xsens(foot):
+    """MT Manager: lines of //, tabs, a counter, a clock of 0.1 ms, acceleration without gravity beside."""
+    head = [
+        "// General information: ",
+        "//  MT Manager version: 2022.2.0 ",
+        "// Device settings: ",
+        "//  Filter Profile: human(46.1)",
+        "// Coordinate system: ENU",
+        "PacketCounter\tSampleTimeFine\tAcc_X\tAcc_Y\tAcc_Z\tFreeAcc_E\tFreeAcc_N\tFreeAcc_U"
+        "\tGyr_X\tGyr_Y\tGyr_Z\tRoll\tPitch\tYaw",
+    ]
+    return lines(
+        foot,
+        lambda t, w, f: [
+            f"{round(200 * t) % 65536}",
+            f"{round(1e4 * t) + 7_000_000}",
+            *numbers(f, f - [0, 0, GRAVITY], w),
+            *["1.0", "2.0", "-137.2"],
+        ],
+        head,
+        "\t",
+    )
+
+
+def movella_dot(foot):
+    head = [
+        "DeviceTag:,foot",
+        "FirmwareVersion:,2.2.0",
+        "AppVersion:,2023.6.0",
+        "SyncStatus:,Unsynced",
+        "OutputRate:,200Hz",
+        "FilterProfile:,General",
+        "Measurement Mode:,Custom mode 5",
+        "StartTime:,2024-02-29_23-59-50",
+        "",
+        "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z,Status",
+    ]
+    return lines(
+        foot,
+        lambda t, w, f: [f"{round(200 * t) + 1}", f"{round(1e6 * t) + 99_000}", *numbers(f, w / DEG), "0"],
+        head,
+    )
+
+
+def rostopic(foot):
+    """`rostopic echo -p`."""
+    three = [f"{{}}.{a}" for a in "xyz"]
+    names = ["%time", "field.header.seq", "field.header.stamp", "field.header.frame_id"]
+    names += [f"field.orientation.{a}" for a in "xyzw"] + [
+        f"field.orientation_covariance{i}" for i in range(9)
+    ]
+    names += [name.format("field.angular_velocity") for name in three]
+    names += [f"field.angular_velocity_covariance{i}" for i in range(9)]
+    names += [name.format("field.linear_acceleration") for name in three]
+    names += [f"field.linear_acceleration_covariance{i}" for i in range(9)]
+    zeros = ["0.0"] * 9
+
+    def cells(t, w, f):
+        stamp = NS + round(1e9 * t)
+        first = [str(stamp + 1_000_000), str(round(200 * t)), str(stamp), "imu_link", *["0.0"] * 3, "1.0"]
+        return [*first, *zeros, *numbers(w), *zeros, *numbers(f), *zeros]
+
+    return lines(foot, cells, [",".join(names)])
+
+
+def gaitmap(foot):
+    """Two feet in one frame, as pandas writes it: forces in m/s2, rates in deg/s."""
+    names = [f"{kind}_{a}" for kind in ("acc", "gyr") for a in "xyz"]
+    head = [
+        "," + ",".join(["left_sensor"] * 6 + ["right_sensor"] * 6),
+        "," + ",".join(2 * names),
+        "time [s]" + "," * 12,
+    ]
+    return lines(foot, lambda t, w, f: [f"{t:.4f}", *numbers(f[::-1], w / DEG, f, w / DEG)], head)
+
+
+def px4(foot):
+    """`ulog2csv`."""
+    names = ["timestamp", *(f"gyro_rad[{i}]" for i in range(3)), "gyro_integral_dt"]
+    names += ["accelerometer_timestamp_relative", *(f"accelerometer_m_s2[{i}]" for i in range(3))]
+    names += ["accelerometer_integral_dt", "accelerometer_clipping"]
+    return lines(
+        foot,
+        lambda t, w, f: [f"{round(1e6 * t) + 12345}", *numbers(w), "5000", "0", *numbers(f), "5000", "0"],
+        [",".join(names)],
+    )
+
+
+PROGRAMS = {
+    "WitMotion, Bluetooth": witmotion_bluetooth,
+    "WitMotion, PC": witmotion_usb,
+    "Shimmer Consensys": shimmer,
+    "Physics Toolbox": physics_toolbox,
+    "Physics Toolbox, decimal commas": physics_toolbox_clock,
+    "EuRoC": euroc,
+    "Xsens MT Manager": xsens,
+    "Movella DOT": movella_dot,
+    "rostopic -p": rostopic,
+    "gaitmap": gaitmap,
+    "PX4's CSV": px4,
+}
+NAMED = {
+    "Shimmer Consensys": "shimmer",
+    "EuRoC": "euroc",
+    "Xsens MT Manager": "xsens",
+    "Movella DOT": "movella",
+    "rostopic -p": "ros",
+    "gaitmap": "gaitmap",
+    "PX4's CSV": "px4",
+}
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_a_file_of_a_program(foot, tmp_path, program):
+    (tmp_path / "a.csv").write_text(PROGRAMS[program](foot), encoding="utf-8", newline="")
+    choice = Reading(sensor="right") if program == "gaitmap" else Reading()
+    findings = same(tmp_path / "a.csv", foot, atol=1e-4, reading=choice)
+    assert findings.format == NAMED.get(program, "csv")
+
+
+def archive(path, tables):
+    with zipfile.ZipFile(path, "w") as file:
+        for name, text in tables.items():
+            file.writestr(name, text)
+
+
+def alone(foot, head, stamp, values, order=(0, 1, 2)):
+    """A table of one sensor."""
+    rows = zip(foot.t, values[:, order], strict=True)
+    return "\n".join([head, *(",".join([*stamp(t), *numbers(row)]) for t, row in rows)]) + "\n"
+
+
+def test_an_archive_of_sensor_logger(foot, tmp_path):
+    """Accelerometer.csv is without gravity, and columns stand z, y, x."""
+
+    def table(values):
+        stamp = lambda t: [str(NS + round(1e9 * t)), f"{t:.6f}"]  # noqa: E731
+        return alone(foot, "time,seconds_elapsed,z,y,x", stamp, values, (2, 1, 0))
+
+    gravity = np.tile([1.2, -0.4, 9.72], (len(foot.t), 1))
+    tables = {
+        "Gyroscope.csv": table(foot.gyro),
+        "Accelerometer.csv": table(foot.accel - gravity),
+        "Gravity.csv": table(gravity),
+        "Metadata.csv": "version,device name\n3,phone\n",
+        "Annotation.csv": "time,seconds_elapsed,text,millisecond_press_duration\n",
+    }
+    archive(tmp_path / "sum.zip", tables)
+    same(tmp_path / "sum.zip", foot)
+    archive(tmp_path / "total.zip", tables | {"TotalAcceleration.csv": table(foot.accel)})
+    same(tmp_path / "total.zip", foot)
+
+
+def test_an_archive_of_phyphox(foot, tmp_path):
+    """Each experiment has names of its own."""
+    stamp = lambda t: [f"{t:.9E}"]  # noqa: E731
+    names = [f'"Acceleration {a} (m/s^2)"' for a in "xyz"], [f'"Gyroscope {a} (rad/s)"' for a in "xyz"]
+    tables = {
+        f"{name}.csv": alone(foot, ",".join(['"Time (s)"', *one]), stamp, values)
+        for name, one, values in zip(
+            ("Accelerometer", "Gyroscope"), names, (foot.accel, foot.gyro), strict=True
+        )
+    }
+    archive(tmp_path / "a.zip", tables | {"meta/time.csv": '"event","experiment time"\n"START",0\n'})
+    same(tmp_path / "a.zip", foot)
+
+
+def ulog(foot, instances=1):
+    """A log of PX4 by its specification: header, flags, a format, subscriptions and data."""
+
+    def message(kind, content):
+        return struct.pack("<HB", len(content), ord(kind)) + content
+
+    layout = (
+        b"sensor_combined:uint64_t timestamp;float[3] gyro_rad;uint32_t gyro_integral_dt;"
+        b"int32_t accelerometer_timestamp_relative;float[3] accelerometer_m_s2;"
+        b"uint32_t accelerometer_integral_dt;"
+    )
+    parts = [
+        b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 12345),
+        message("B", bytes(40)),
+        message("F", layout),
+    ]
+    for one in range(instances):
+        parts.append(message("A", struct.pack("<BH", one, one) + b"sensor_combined"))
+    for t, w, f in zip(foot.t, foot.gyro, foot.accel, strict=True):
+        for one in range(instances):
+            row = struct.pack("<Q3fIi3fI", 12345 + round(1e6 * t), *w, 5000, 0, *f, 5000)
+            parts.append(message("D", struct.pack("<H", one) + row))
+    return b"".join(parts)
+
+
+def test_a_log_of_px4(foot, tmp_path):
+    pytest.importorskip("pyulog")
+    (tmp_path / "a.ulg").write_bytes(ulog(foot))
+    assert same(tmp_path / "a.ulg", foot).format == "ulog"
+
+
+def test_a_log_of_px4_with_two_imus(foot, tmp_path):
+    from footfall.errors import InputError
+
+    pytest.importorskip("pyulog")
+    (tmp_path / "a.ulg").write_bytes(ulog(foot, 2))
+    with pytest.raises(
+        InputError, match="2 sensors, choose one with --sensor: sensor_combined 0, sensor_com"
+    ):
+        read(tmp_path / "a.ulg")
+    same(tmp_path / "a.ulg", foot, reading=Reading(sensor="sensor_combined 1"))
+
+
+def test_a_damaged_log_of_px4(foot, tmp_path):
+    from footfall.errors import InputError
+
+    pytest.importorskip("pyulog")
+    (tmp_path / "a.ulg").write_bytes(ulog(foot)[:300])
+    with pytest.raises(InputError, match=r"a\.ulg"):
+        read(tmp_path / "a.ulg")
+
+
+def test_a_bag_of_ros_1(foot, tmp_path):
+    rosbag1 = pytest.importorskip("rosbags.rosbag1")
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS1_NOETIC)
+    kind = store.types
+    imu, header, stamp = (
+        kind[name] for name in ("sensor_msgs/msg/Imu", "std_msgs/msg/Header", "builtin_interfaces/msg/Time")
+    )
+    vector, quaternion = kind["geometry_msgs/msg/Vector3"], kind["geometry_msgs/msg/Quaternion"]
+    with rosbag1.Writer(tmp_path / "a.bag") as writer:
+        connection = writer.add_connection("/imu/data", imu.__msgtype__, typestore=store)
+        for i, (t, w, f) in enumerate(zip(foot.t, foot.gyro, foot.accel, strict=True)):
+            at = NS + round(1e9 * t)
+            none = np.zeros(9)
+            message = imu(
+                header(i, stamp(at // 10**9, at % 10**9), "foot"),
+                quaternion(0.0, 0.0, 0.0, 1.0),
+                none,
+                vector(*w),
+                none,
+                vector(*f),
+                none,
+            )
+            writer.write(connection, at, store.serialize_ros1(message, imu.__msgtype__))
+    assert same(tmp_path / "a.bag", foot).format == "ros-bag"
