@@ -7,7 +7,7 @@ from typing import Self
 
 
 class InputError(ValueError):
-    """Something from outside (file, key, argument, recording) cannot be used.
+    """An input (file, key, argument, recording) that cannot be used.
 
     Its text, "subject: message", is one sentence that names the culprit, its value and what was expected;
     the command line prints it and exits with code 2.

@@ -21,8 +21,8 @@ from footfall.tables import column_names, read_table, require_columns, write_tab
 class Recording(Shown):
     """IMU samples in the body frame (x forward, y left, z up when level).
 
-    Its arrays cannot be written into: what one method gets, the next one gets. Change a copy (scipy's
-    `Rotation.apply` wants one too).
+    Its arrays are read-only, because the next method gets them too. Change a copy (scipy's `Rotation.apply`
+    needs one too).
 
     Attributes
     ----------

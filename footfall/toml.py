@@ -63,7 +63,7 @@ def checked(table: Mapping[str, Any], model: type[Model], source: str) -> Model:
     try:
         return model.model_validate(table)
     except ValidationError as error:
-        # A key that nobody knows explains one that is missing, so it comes first.
+        # An unknown key explains one that is missing, so it comes first.
         first = min(error.errors(), key=lambda one: one["type"] != "extra_forbidden")
         key = _key(table, first["loc"])
         if first["type"] == "extra_forbidden":

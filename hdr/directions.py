@@ -86,7 +86,7 @@ class Directions:
         return reference if agreement >= params.learn_agreement else None
 
     def learn(self, heading: float, weight: float = 1.0) -> None:
-        """Take in that somebody walked with this heading (rad), and how surely it was along a straight."""
+        """Learn from a heading (rad), weighted by how surely it was along a straight."""
         self._sum += weight * folded(heading, self.params.count)
         self._weight += weight
 

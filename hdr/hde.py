@@ -122,7 +122,7 @@ class Hde:
     Attributes
     ----------
     params : its constants
-    rows : evidence, from footfall 0 on, of which nobody asks
+    rows : evidence, a row a footfall; row 0 is the start, which is not asked for
     """
 
     units: Mapping[str, str] = {"reference": "rad", "innovation": "rad"}

@@ -1,7 +1,7 @@
 """Improved Heuristic Drift Elimination (Deng, Cao, Wang and Wang 2018, section 2.4): Eq. 20 to 27.
 
-Where the headings of the last footfalls say that somebody walks straight, the filter is told that the heading
-is that of the nearest dominant direction, if one is near, or else the mean of those headings. The text of the
+Where the headings of the last footfalls show a straight, the filter is told that the heading is that of the
+nearest dominant direction, if one is near, or else the mean of those headings. The text of the
 paper at hand lost minus signs and the 1 / (W - 1) of Eq. 20; here they are as the words need them.
 """
 
@@ -29,7 +29,7 @@ class IhdeParams:
     heading : of a step: the foot's "yaw", the "course" of the stride, or "both"
         (`footfall.hdr.step_heading`)
     window : W, footfalls that are judged together
-    k1, a : 1/rad and 1, of the Z membership (Eq. 21): somebody whose headings scatter by a / k1 is taken for
+    k1, a : 1/rad and 1, of the Z membership (Eq. 21): a walk whose headings scatter by a / k1 is taken for
         half straight. That must lie above the scatter of the foot's yaw on straights, and below a curve's
     b, c, gamma_t : s^-(2c), 1 and s, of the bell membership in the stride time (Eq. 22)
     w1, w2 : weights of the two in E (Eq. 23)
@@ -62,7 +62,7 @@ class IhdeParams:
 
 
 class Evaluation(NamedTuple):
-    """Whether somebody walks straight: std (rad), mu1, mu2, E and En of Eq. 20 to 24."""
+    """Whether the walk is straight: std (rad), mu1, mu2, E and En of Eq. 20 to 24."""
 
     std: float
     straight: float
@@ -117,7 +117,7 @@ class Ihde:
     Attributes
     ----------
     params : its constants
-    rows : evidence, from footfall 0 on, of which nobody asks
+    rows : evidence, a row a footfall; row 0 is the start, which is not asked for
     """
 
     units: Mapping[str, str] = {

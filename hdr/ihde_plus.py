@@ -160,7 +160,7 @@ class IhdePlus:
     Attributes
     ----------
     params : its constants
-    rows : evidence, from footfall 0 on, of which nobody asks
+    rows : evidence, a row a footfall; row 0 is the start, which is not asked for
     """
 
     units: Mapping[str, str] = {

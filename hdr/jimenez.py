@@ -22,7 +22,7 @@ from footfall.settings import require, setting
 
 @dataclass(frozen=True)
 class FilterHdrParams:
-    """HDR in the filter: while somebody walks straight, the heading is what it was.
+    """HDR in the filter: on a straight the heading stays what it was.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class FilterHdr:
     Attributes
     ----------
     params : its constants
-    rows : evidence, from footfall 0 on, of which nobody asks
+    rows : evidence, a row a footfall; row 0 is the start, which is not asked for
     """
 
     units: Mapping[str, str] = {"change": "rad", "straight": "", "innovation": "rad"}
@@ -121,7 +121,7 @@ class Jimenez:
     Attributes
     ----------
     params : its constants
-    rows : evidence, from footfall 0 on, of which nobody asks
+    rows : evidence, a row a footfall; row 0 is the start, which is not asked for
     """
 
     units: Mapping[str, str] = {

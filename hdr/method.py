@@ -31,10 +31,10 @@ class Method:
     run : makes the track from a `Reckoning` and `params`
     params : a frozen dataclass with its values, or a mapping of anything, or None for a method without
     needs : "footfalls" of the `Reckoning` alone, or "samples"
-    directions : which of its dominant directions can be told: "none" goes by none, "count" learns where they
-        are, "all" takes their number and one of them
+    directions : which dominant directions it takes: "none" uses none, "count" takes their number and learns
+        them, "all" takes their number and one of them
     version : of the content of a method of others (`footfall.hdr.others`); "" for one built in
-    use : text that it was found by, for a method of others
+    use : text by which it was found, for a method of others
     """
 
     name: str

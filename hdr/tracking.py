@@ -109,22 +109,22 @@ def track(
 
     Parameters
     ----------
-    method : as `footfall.hdr.methods.find_method` takes it: a name, or anybody's own; None for `hdr` of a
+    method : as `footfall.hdr.methods.find_method` takes it: a name, or your own method; None for `hdr` of a
         simulated recording and `iez` of a real one
     detector : name in `DETECTORS`; None for `threshold` of a simulated recording and `patient` of a real one
     format, sizes, rate_hz, reading : as of `footfall.formats.read`
-    bias_s : s, T_bias; None for the rest that there is, anywhere (`footfall.pdr.rests.find_rest`); of a
-        simulated recording as long as it rests at the start, at most 25
+    bias_s : s, T_bias; None for all rests of the recording (`footfall.pdr.rests.find_rest`); of a simulated
+        one for as long as it rests at the start, at most 25
     start : where the IMU rests before the walk; None for what the recording says (`StartPose.of`)
     heading : rad, at the start, in place of the start's own
-    directions, reference : dominant directions, for methods that go by them: how many (None for 4), and one
+    directions, reference : dominant directions, for methods that use them: how many (None for 4), and one
         of them (rad; None for that in which the walk sets out)
     values : address -> value of `pdr`, `filter` and the method's own parameters, as `--set` takes them
 
     Raises
     ------
     InputError
-        No such method or address, or a value that it refuses; directions for a method that goes by none; what
+        No such method or address, or a value that it refuses; directions for a method that uses none; what
         reading and navigating refuse; a method that needs all samples, and too many of them; or a track that
         no legs can make.
     """

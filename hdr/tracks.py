@@ -44,9 +44,9 @@ class Reckoning:
 
     Attributes
     ----------
-    directions : that a method goes by that goes by any; without a reference, one of them is that in which the
-        walk sets out
-    guided : settings of the filter under a heading method, where that names no filter of its own
+    directions : dominant directions, for methods that use them; without a reference, one of them is that in
+        which the walk sets out
+    guided : settings of the filter under a heading method that names no filter of its own
     """
 
     recording: Recording

@@ -27,7 +27,7 @@ class Rest:
     gyro_bias : (3,) rad/s, the static bias eps0 as a vector in the body (HDR Eq. 1)
     force : (3,) m/s2, mean specific force: which way is up
     last : index of the last sample that was averaged
-    bias_sd : rad/s, how well the bias is known; 0 where nobody asked
+    bias_sd : rad/s, how well the bias is known; 0 where it was not asked for
     source : what the bias was taken from, in words
     """
 

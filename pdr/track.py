@@ -17,7 +17,7 @@ from footfall.tables import read_table, require_columns, write_table
 
 @dataclass(frozen=True)
 class Track(Shown):
-    """Where a method says that the foot was.
+    """The estimated positions and headings of the foot, by one method.
 
     Attributes
     ----------

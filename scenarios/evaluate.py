@@ -185,11 +185,10 @@ def evaluate(
     ----------
     method : a function `(recording, start) -> Track`, a name, a `Method`, or several of these
     scenario : stock name or TOML file
-    units : individual IMUs, dealt to the walks
+    units : number of individual IMUs, spread over the walks
     walks, seed, imu : the scenario's own when None
     values : address -> value (`footfall parameters`), as `--set` takes them
-    workers : processes, one a core when None; what cannot travel to another (`travelling`) is called in this
-        one
+    workers : processes, one a core when None; a method that cannot be pickled (`travelling`) runs in this one
     on_progress : as of `execute`; bars on a terminal when None
 
     Returns

@@ -1,4 +1,4 @@
-"""A scenario: who walks where, how fast and how regularly, in what cold, with which sensor, how often."""
+"""A scenario: people, path, pace and regularity, temperatures, sensor, and number of walks."""
 
 from __future__ import annotations
 

@@ -73,8 +73,8 @@ class Setup:
 class Trial:
     """One walk x one unit x its noise.
 
-    `number` of the walk in the scenario decides its subject and its weather; `noise_seed` what differs from
-    recording to recording of one unit.
+    `number` is of the walk in the scenario, and decides subject and temperatures. `noise_seed` is of what
+    differs from recording to recording of one unit.
     """
 
     setup: Setup
@@ -96,12 +96,12 @@ class Trial:
 
 @dataclass(frozen=True)
 class Row:
-    """What one method made of a trial: a score, or the stage and the reason of what came to no end.
+    """The result of one method on a trial: a score, or the stage and the reason of a failure.
 
     Attributes
     ----------
     subject : name of the person; footfalls : rows of the track
-    stage : of a failure: "walk", "record", "track" or "score"; "worker" where what did it came to no end
+    stage : of a failure: "walk", "record", "track" or "score"; "worker" where its process ended
     walk_sha, recording_sha : of their content, or "" where there is none
     """
 
@@ -292,7 +292,7 @@ def perform(
     keep : whether walk, recording, drift budget and tracks are part of the outcome
     store : folder of footfalls that are taken from there, where no method needs samples, and kept there
     source : gives the trial's recording, where others have it, too; made here when None
-    surprised : called with an exception that is nobody's refusal, which then is an `error`, too; None: raised
+    surprised : called with an unexpected exception, which then becomes an `error`, too; None: it is raised
     """
     blank = blank_row(trial, subject=str(walk.meta["subject"]), walk_sha=walk.sha)
     setup, budget, spent = trial.setup, None, dict.fromkeys(("record", "track", "score"), 0.0)

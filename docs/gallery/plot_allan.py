@@ -3,7 +3,7 @@ How long to rest before a walk
 ==============================
 
 The Allan deviation of a gyro at rest falls while averaging removes white noise, and stops falling where the
-bias wanders. To average for longer than that is in vain; the HDR paper calls this time T_bias.
+bias wanders. It does not help to average for longer than that. The HDR paper calls this time T_bias.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 Which error of the sensor turned the heading
 ============================================
 
-Only a simulation knows this. Footfall books the drift of every stride to the effects of the data sheet: the
-heading error of each cause, added up along the walk, is the heading error of them all.
+Only a simulation knows this. Footfall splits the drift of every stride among the effects of the data sheet.
+The heading errors of the causes add up to the total heading error.
 """
 
 import matplotlib.pyplot as plt

@@ -1,9 +1,9 @@
 """
-A method of three lines, judged
+A method of three lines, scored
 ===============================
 
-This method knows that the way round the block turns by 270 degrees. Whatever the heading gained beyond that
-is taken for drift, spread evenly over the walk. HDR knows nothing of the kind.
+This method knows that the way round the block turns by 270 degrees. It takes every further change of heading
+for drift, and spreads it evenly over the walk. HDR does not know the path.
 """
 
 import matplotlib.pyplot as plt

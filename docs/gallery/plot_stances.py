@@ -2,8 +2,8 @@
 When the foot is at rest
 ========================
 
-Dead reckoning of a foot lives on the moments at which it stands: there the speed is known to be zero. This
-foot is synthetic; recordings of real feet go the same way.
+Dead reckoning of a foot depends on the moments at which the foot stands, because its speed is zero there.
+This foot is synthetic. Recordings of real feet work in the same way.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 Where three methods end
 =======================
 
-One walk round a block, heard by one unit of the HDR paper's IMU: navigated without correction, with HDR and
-with IHDE. HDR corrects where one goes straight for long; here a corner comes every forty metres or so.
+One walk round a block with one unit of the HDR paper's IMU, navigated without correction, with HDR and with
+IHDE. HDR corrects on long straights, but here a corner comes every forty metres or so.
 """
 
 import matplotlib.pyplot as plt

@@ -15,11 +15,11 @@ from footfall.errors import InputError
 def allan(
     recording: Annotated[
         Path | None,
-        typer.Argument(help="A recording at rest, best an hour long; if left out, one is simulated."),
+        typer.Argument(help="A recording at rest, best an hour long. Default: one is simulated."),
     ] = None,
     imu: Annotated[str, typer.Option(help="The IMU to simulate: its name or your data sheet.")] = "nimu",
     unit_seed: Annotated[
-        int, typer.Option(min=0, help="Which individual of that IMU: each seed is another one.")
+        int, typer.Option(min=0, help="Seed of the unit of that IMU. Each seed is another unit.")
     ] = 1,
     hours: Annotated[
         float, typer.Option(min=0.05, max=24, help="How long the simulated IMU rests.", callback=finite)
@@ -38,9 +38,9 @@ def allan(
     rate: RateOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Tell how long an IMU should rest before a walk, from its Allan deviation.
+    """Find how long an IMU should rest before a walk, from its Allan deviation.
 
-    The time is that after which averaging the gyros removes no more noise (T_bias of the HDR paper).
+    After that time, averaging the gyros removes no more noise (T_bias of the HDR paper).
     """
     from footfall.formats import parse_units, read
     from footfall.models.imu import draw_unit, load_spec

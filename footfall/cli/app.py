@@ -1,8 +1,8 @@
 """The command line: `footfall --help`.
 
-Results go to standard output, everything else to standard error. Exit codes: 0 well, 1 a gate or a check
-failed, 2 bad input, told in one sentence, 3 no gate failed, but some are undecided, 4 stopped, and may be
-taken up again, 130 interrupted.
+Results go to standard output, everything else to standard error. Exit codes: 0 success, 1 a gate or a check
+failed, 2 bad input (one sentence), 3 no gate failed, but some are undecided, 4 stopped, start it again to go
+on, 130 interrupted.
 
 Each command is a file of its name. It is only a signature until it is called: what it needs it imports then,
 so that `footfall list` does not wait for what `footfall run` loads.
@@ -45,8 +45,8 @@ from footfall.cli.walk import walk
 app = typer.Typer(
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
-    help="Footfall lets a simulated person walk a path with an IMU on the shoe, and tells how far pedestrian "
-    "dead reckoning goes astray on it, with and without heading correction.\n\n"
+    help="Footfall lets a simulated person walk a path with an IMU on the shoe, and measures the error of "
+    "pedestrian dead reckoning, with and without heading correction.\n\n"
     "Start with [bold]footfall run closed-loop[/bold], or go step by step: walk, record, track, score.",
 )
 

@@ -16,9 +16,7 @@ if TYPE_CHECKING:
     from footfall.scenarios.store import KeptFile
     from footfall.simulate.cache import CachedWalk
 
-cache = typer.Typer(
-    help="List the walks and footfalls that are kept, or remove those that were not used for longest."
-)
+cache = typer.Typer(help="List the cached walks and footfalls, or remove those unused for longest.")
 
 
 @cache.callback(invoke_without_command=True)
@@ -60,10 +58,10 @@ def list_(as_json: JsonOption = False) -> None:
 
 @cache.command()
 def prune(
-    keep: Annotated[str, typer.Option(metavar="SIZE", help="How much stays, such as 500MB or 10GB.")],
+    keep: Annotated[str, typer.Option(metavar="SIZE", help="Size to keep, such as 500MB or 10GB.")],
     as_json: JsonOption = False,
 ) -> None:
-    """Remove the walks and footfalls that were not used for longest, until the others fit into --keep."""
+    """Remove the walks and footfalls unused for longest, until the others fit into --keep."""
     from footfall.scenarios.store import kept_footfalls
     from footfall.scenarios.store import prune as remove
     from footfall.simulate.cache import cached_walks

@@ -26,13 +26,14 @@ def check(
     command: Annotated[
         str | None,
         typer.Option(
-            help="Instead, a program: its command line, with {recording}, {track}, {start}, {params} and "
-            "{rate} in it.",
+            help="Instead of a method, a program: its command line with the placeholders {recording}, "
+            "{track}, {start}, {params} and {rate}.",
             show_default=False,
         ),
     ] = None,
     format: Annotated[
-        str, typer.Option("--format", help="Of the recording that a program reads: f64, csv or parquet.")
+        str,
+        typer.Option("--format", help="Format of a program's recording: f64, csv or parquet."),
     ] = "f64",
     timeout: Annotated[
         float, typer.Option(help="Seconds after which a program is ended.", callback=finite)
@@ -45,14 +46,15 @@ def check(
         bool,
         typer.Option(
             "--full",
-            help="Run it on the first five minutes of every stock scenario, too, which are walked first.",
+            help="Also run the method on the first five minutes of every stock scenario. They are simulated "
+            "first.",
         ),
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Check a method, yours or a built-in one: twelve things that every study relies on.
+    """Check a method, yours or a built-in one, for twelve things that every study relies on.
 
-    On recordings of a synthetic foot, which takes seconds. Exit code 1 when a check fails.
+    It runs on recordings of a synthetic foot and takes seconds. Exit code 1 when a check fails.
     """
     from footfall.hdr.check import examine
     from footfall.hdr.methods import find_method

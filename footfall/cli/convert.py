@@ -23,7 +23,7 @@ def convert(
     unit: UnitOption = None,
     rate: RateOption = None,
 ) -> None:
-    """Write a recording, mended, with the columns of Footfall's own: t, gyro_x, ..., accel_z, in SI."""
+    """Mend a recording and write it with Footfall's columns: t, gyro_x, ..., accel_z, in SI units."""
     from footfall.formats import read
     from footfall.recording import write_recording
 

@@ -23,7 +23,7 @@ def export(
 ) -> None:
     """Write a track, or a walk's truth, in the format of other tools.
 
-    A track has headings alone: its poses are level. Compare positions, not rotations, with those of a walk.
+    A track has headings only, so its poses are level. Compare its positions with a walk's, not its rotations.
     """
     from footfall.scenarios.export import export as write
     from footfall.scenarios.export import require_format

@@ -17,33 +17,33 @@ def gate(
     gates: Annotated[
         str,
         typer.Argument(
-            help="Your TOML file of gates (docs/gates.md), a name that comes with Footfall, or `list` to see "
-            "those.",
+            help="Your TOML file of gates (docs/gates.md), the name of a stock file, or `list` to show the "
+            "names.",
             show_default=False,
         ),
     ],
     units: Annotated[
-        int | None, typer.Option(min=1, help="How many cases; the file says if left out.", show_default=False)
+        int | None, typer.Option(min=1, help="Number of cases. Default: the file's.", show_default=False)
     ] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="20 cases, or as many as a gate needs.")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="Use 20 cases, or as many as a gate needs.")] = False,
     sequential: Annotated[
         str | None,
         typer.Option(
             metavar="20,40,80",
-            help="Look after so many cases, each time at an equal part of the 5 %, and stop where all is "
-            "decided.",
+            help="Judge after each of these numbers of cases, each time at an equal part of the 5 %, and "
+            "stop when all gates are decided.",
             show_default=False,
         ),
     ] = None,
     record: Annotated[
         Path | None,
         typer.Option(
-            help="Parquet file to write the scores to, for others to be compared with; nothing is judged.",
+            help="Write the scores to this Parquet file, a baseline for comparisons. Nothing is judged.",
             show_default=False,
         ),
     ] = None,
     cache_key: Annotated[
-        bool, typer.Option("--cache-key", help="Print a hash of what makes the walks, and do nothing else.")
+        bool, typer.Option("--cache-key", help="Only print a hash of everything that the walks depend on.")
     ] = False,
     junit: Annotated[
         Path | None, typer.Option(help="XML file for JUnit; undecided is an error.", show_default=False)
@@ -54,16 +54,16 @@ def gate(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for the results; out/NAME if left out.", show_default=False),
+        typer.Option(help="Folder for the results. Default: out/NAME.", show_default=False),
     ] = None,
     no_cache: NoCacheOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Judge methods over many units of an IMU: pass, fail or undecided, with bounds that hold.
+    """Judge methods over many units of an IMU: pass, fail or undecided, by exact bounds.
 
     Exit code 0 when all gates pass, 1 when one fails, 3 when none fails and some are undecided.
 
-    The folder gets report.html, gate.json and cases.parquet.
+    The results are report.html, gate.json and cases.parquet.
     """
     from footfall.scenarios.report.gate_files import append_text, write_bytes, write_gate
     from footfall.scenarios.report.gates import cases_line, gate_document, gate_report

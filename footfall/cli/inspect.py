@@ -31,9 +31,9 @@ def inspect(
     rate: RateOption = None,
     json: JsonOption = False,
 ) -> None:
-    """Look into a recording: its columns and what they were taken for, rate, rests, noise, clipping.
+    """Show what is in a recording: columns and their meaning, rate, rests, noise, clipping.
 
-    Nothing is navigated, and nothing written.
+    Nothing is navigated or written.
     """
     from footfall.formats.inspect import inspect as look
 

@@ -15,35 +15,34 @@ def map_(
     x: Annotated[
         str, typer.Argument(metavar="METHOD.A", help="A method's parameter (see `footfall parameters`).")
     ],
-    y: Annotated[str, typer.Argument(metavar="METHOD.B", help="Another one of the same method.")],
-    scenario: Annotated[str, typer.Option(help="What is walked: a name or your file.")] = "closed-loop",
+    y: Annotated[str, typer.Argument(metavar="METHOD.B", help="Another parameter of the same method.")],
+    scenario: Annotated[str, typer.Option(help="Scenario: a name or your file.")] = "closed-loop",
     imu: Annotated[
-        str | None, typer.Option(help="IMU on the shoe; the scenario says if left out.", show_default=False)
+        str | None, typer.Option(help="IMU on the shoe. Default: the scenario's.", show_default=False)
     ] = None,
     x_range: Annotated[
         str | None,
         typer.Option(
             "--x",
             metavar="FROM..TO",
-            help="A quarter to four times the default if left out.",
+            help="Range of METHOD.A. Default: a quarter to four times its value.",
             show_default=False,
         ),
     ] = None,
     y_range: Annotated[
-        str | None, typer.Option("--y", metavar="FROM..TO", help="The same of the other.", show_default=False)
+        str | None,
+        typer.Option("--y", metavar="FROM..TO", help="The same for METHOD.B.", show_default=False),
     ] = None,
-    steps: Annotated[int, typer.Option(min=2, max=200, help="Values of each.")] = 32,
+    steps: Annotated[int, typer.Option(min=2, max=200, help="Number of values of each parameter.")] = 32,
     walks: Annotated[
-        int | None, typer.Option(min=1, help="How many walks; the scenario says if left out.")
+        int | None, typer.Option(min=1, help="Number of walks. Default: the scenario's.")
     ] = None,
-    units: Annotated[int, typer.Option(min=1, help="How many units of the IMU, dealt to the walks.")] = 20,
-    metric: Annotated[str, typer.Option(help="Score that is mapped (docs/scores.md).")] = (
-        "heading_error_mean_deg"
-    ),
-    over: Annotated[str, typer.Option(help="The cases' median, mean or p90.")] = "median",
+    units: Annotated[int, typer.Option(min=1, help="Number of units, spread over the walks.")] = 20,
+    metric: Annotated[str, typer.Option(help="Score to map (docs/scores.md).")] = ("heading_error_mean_deg"),
+    over: Annotated[str, typer.Option(help="Figure over the cases: median, mean or p90.")] = "median",
     settings: SetOption = None,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes; one a core if left out.", show_default=False)
+        int | None, typer.Option(min=1, help="Number of processes. Default: one a core.", show_default=False)
     ] = None,
     figure: Annotated[
         Path | None, typer.Option(help="PNG file to draw the map into.", show_default=False)
@@ -52,7 +51,7 @@ def map_(
 ) -> None:
     """Map a method's error over two of its parameters, over many units and walks.
 
-    HDR's maps are compiled: a thousand pairs cost no more than hearing the units. Others run in full.
+    HDR's maps are compiled: a thousand pairs cost no more than recording the units. Others run in full.
     """
     from footfall.cli.choices import number_range
     from footfall.errors import InputError
@@ -75,7 +74,7 @@ def map_(
 
     if y.partition(".")[0] != name:
         raise InputError(f"{x} and {y}: expected two parameters of one method")
-    with watching("units heard") as (trials, (heard,)):
+    with watching("units recorded") as (trials, (heard,)):
         found = error_map(
             base,
             factor(x, x_range),

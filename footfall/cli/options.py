@@ -10,20 +10,20 @@ import typer
 from footfall.cli.terminal import finite
 
 ScenarioArgument = Annotated[
-    str, typer.Argument(help="A scenario that comes with Footfall (see `footfall list`), or your TOML file.")
+    str, typer.Argument(help="A stock scenario (see `footfall list`), or your TOML file.")
 ]
 OutputOption = Annotated[
     Path,
-    typer.Option("--output", "-o", help="File to write: .parquet, or .csv, which holds the numbers alone."),
+    typer.Option("--output", "-o", help="File to write: .parquet, or .csv, which has the numbers only."),
 ]
 NoCacheOption = Annotated[
-    bool, typer.Option("--no-cache", help="Walk even if this walk is in the cache, and do not keep it there.")
+    bool, typer.Option("--no-cache", help="Simulate the walk even if it is in the cache, and do not keep it.")
 ]
 FormatOption = Annotated[
     str,
     typer.Option(
         "--format",
-        help="What wrote the recording: auto finds out; or a name as in docs/real_recordings.md, such as "
+        help="Format of the recording: auto recognizes it; or a name as in docs/real_recordings.md, such as "
         "footfall, xio, xsens, ros, matlab, csv.",
     ),
 ]
@@ -37,21 +37,20 @@ UnitOption = Annotated[
 ]
 RateOption = Annotated[
     float | None,
-    typer.Option("--rate", help="Samples per second (Hz), for a file without time.", callback=finite),
+    typer.Option("--rate", help="Sampling rate, Hz, for a file without time.", callback=finite),
 ]
 ColumnsOption = Annotated[
     str | None,
     typer.Option(
         "--columns",
-        help="Names of a table's columns in order, in place of its own, - for one that is none: "
-        "t,gx,gy,gz,ax,ay,az.",
+        help="Names of the table's columns in order, such as t,gx,gy,gz,ax,ay,az. - skips a column.",
         show_default=False,
     ),
 ]
 SensorOption = Annotated[
     str | None,
     typer.Option(
-        "--sensor", help="Which of several sensors in a file; listed if left out.", show_default=False
+        "--sensor", help="Which of several sensors in a file. Without it they are listed.", show_default=False
     ),
 ]
 SetOption = Annotated[
@@ -59,7 +58,7 @@ SetOption = Annotated[
     typer.Option(
         "--set",
         metavar="ADDRESS=VALUE",
-        help="Another value for a parameter (see `footfall parameters`), or @FILE for the table [set] of a "
+        help="Another value for a parameter (see `footfall parameters`), or @FILE for the table \\[set] of a "
         "TOML file; may be repeated.",
         show_default=False,
     ),
@@ -78,8 +77,8 @@ DirectionsOption = Annotated[
     int | None,
     typer.Option(
         min=1,
-        help="How many dominant directions there are, evenly spaced, for methods that go by them: 4 if left "
-        "out, 8 with diagonals.",
+        help="Number of dominant directions, evenly spaced, for methods that use them: 8 with diagonals. "
+        "Default: 4.",
         show_default=False,
     ),
 ]

@@ -22,19 +22,19 @@ def parameters(
     imu: Annotated[
         str | None,
         typer.Option(
-            help="The data sheet whose values are shown; the scenario's if left out.", show_default=False
+            help="The data sheet whose values are shown. Default: the scenario's.", show_default=False
         ),
     ] = None,
     methods: Annotated[
         str | None,
         typer.Option(
-            help="Methods whose parameters are shown, separated by commas; all if left out.",
+            help="Methods whose parameters are shown, separated by commas. Default: all.",
             show_default=False,
         ),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """List every parameter: its address, type, unit, value, bounds, and the first stage that it changes.
+    """List every parameter: its address, type, unit, value, bounds, and the first stage that it repeats.
 
     Set one with --set ADDRESS=VALUE in run, walk, record and track.
     """

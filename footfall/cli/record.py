@@ -1,4 +1,4 @@
-"""`footfall record`: what an IMU says of a walk, or adds to a real recording."""
+"""`footfall record`: a walk, or a real recording, with the errors of an IMU."""
 
 from __future__ import annotations
 
@@ -29,22 +29,20 @@ def record(
     from_recording: Annotated[
         Path | None,
         typer.Option(
-            help="Instead of a walk, a real recording: its samples with that IMU's bias, temperature and "
-            "g-sensitivity errors on top.",
+            help="Instead of a walk, a real recording. The IMU's bias, temperature and g-sensitivity errors "
+            "are added to its samples.",
             show_default=False,
         ),
     ] = None,
-    imu: Annotated[
-        str, typer.Option(help="An IMU's name (see `footfall list`) or your data sheet.")
-    ] = "nimu",
+    imu: Annotated[str, typer.Option(help="IMU: a name (see `footfall list`) or your data sheet.")] = "nimu",
     unit_seed: Annotated[
-        int, typer.Option(min=0, help="Which individual of that IMU: each seed is another one.")
+        int, typer.Option(min=0, help="Seed of the unit of that IMU. Each seed is another unit.")
     ] = 1,
     noise_seed: Annotated[
         int | None,
         typer.Option(
             min=0,
-            help="Which recording of it: noise and turn-on bias; the number of --unit-seed if left out.",
+            help="Seed of noise and turn-on bias. Default: that of --unit-seed.",
             show_default=False,
         ),
     ] = None,
@@ -52,12 +50,11 @@ def record(
     only: OnlyOption = None,
     indoors: Annotated[
         float,
-        typer.Option(
-            min=-40, max=85, help="Temperature of the room that the IMU comes from, degC.", callback=finite
-        ),
+        typer.Option(min=-40, max=85, help="Temperature of the IMU at the start, degC.", callback=finite),
     ] = 20.0,
     outdoors: Annotated[
-        float, typer.Option(min=-40, max=85, help="Temperature where it is walked, degC.", callback=finite)
+        float,
+        typer.Option(min=-40, max=85, help="Temperature of the air on the walk, degC.", callback=finite),
     ] = 20.0,
     bias_shift: Annotated[
         float,
@@ -71,10 +68,10 @@ def record(
     unit: UnitOption = None,
     rate: RateOption = None,
 ) -> None:
-    """Record a walk with one individual IMU: the truth with that sensor's errors.
+    """Record a walk with one unit of an IMU: the truth plus that unit's errors.
 
-    With --from-recording a real foot walks, and what the IMU adds to its recording is known; --format, --unit
-    and --rate tell how to read it.
+    With --from-recording a real recording is used instead, so a known drift is added to a real foot.
+    --format, --unit and --rate say how to read it.
     """
     from footfall.cli.choices import dropped_effects
     from footfall.formats import parse_units, read
@@ -95,9 +92,7 @@ def record(
     if walk is not None and (format != "auto" or unit or rate is not None):
         raise InputError("record: --format, --unit and --rate tell how to read --from-recording, not a walk")
     if walk is None and bias_shift:
-        raise InputError(
-            "record: --bias-shift is for walks: nobody says when a real recording begins to move"
-        )
+        raise InputError("record: --bias-shift is for walks: the first step of a real recording is not known")
     off = dropped_effects(without, only)
     spec, constants = sensor(imu, parsed(settings or ()))
     worn = overridden(draw_unit(spec, unit_seed), constants)

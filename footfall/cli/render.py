@@ -14,12 +14,12 @@ from footfall.cli.terminal import ERR, finite, require_output, say
 def render(
     scenario: ScenarioArgument,
     output: Annotated[Path, typer.Option("--output", "-o", help="WebP or PNG file to write.")],
-    number: Annotated[int, typer.Option(min=1, help="Which of the scenario's walks: its subject.")] = 1,
+    number: Annotated[int, typer.Option(min=1, help="Which of the scenario's walks, and so whose.")] = 1,
     skip: Annotated[
-        float, typer.Option(min=0, help="Seconds after the first step at which it begins.", callback=finite)
+        float, typer.Option(min=0, help="Start of the picture, s after the first step.", callback=finite)
     ] = 4.0,
     seconds: Annotated[
-        float, typer.Option(min=0.5, max=60, help="How much a moving picture shows.", callback=finite)
+        float, typer.Option(min=0.5, max=60, help="Length of a moving picture, s.", callback=finite)
     ] = 4.0,
     signals: Annotated[
         bool, typer.Option("--signals", help="What the IMU says beside a moving picture.")
@@ -27,7 +27,7 @@ def render(
 ) -> None:
     """Draw the walker at the beginning of a walk: moving (.webp) or as a strip of moments (.png).
 
-    Without a screen it draws through EGL; set MUJOCO_GL to choose another way.
+    Without a screen it draws by EGL. MUJOCO_GL chooses another way.
     """
     from footfall.scenarios.scenario import load_scenario
     from footfall.simulate.render import render as draw

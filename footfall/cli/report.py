@@ -13,9 +13,9 @@ from footfall.cli.terminal import say
 def report(
     folder: Annotated[Path, typer.Argument(help="What `footfall run`, `sweep` or `gate` wrote.")],
 ) -> None:
-    """Write the report.html of a folder of results again, from its files alone.
+    """Write the report.html of a folder of results again, from its files.
 
-    One page that opens without a network: tracks on a map, errors and their causes, tables that can be
+    The page opens without a network. It has tracks on a map, errors and their causes, tables that can be
     sorted, parameters, seeds, versions and the command that makes the results again.
     """
     from footfall.scenarios.report.page import write_page

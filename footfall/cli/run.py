@@ -23,42 +23,43 @@ def run(
     context: typer.Context,
     scenario: ScenarioArgument,
     walks: Annotated[
-        int | None, typer.Option(min=1, help="How many walks; the scenario says if left out.")
+        int | None, typer.Option(min=1, help="Number of walks. Default: the scenario's.")
     ] = None,
     seed: Annotated[
         int | None,
         typer.Option(
-            min=0, help="Seed of the first walk, the next has the next; the scenario says if left out."
+            min=0, help="Seed of the first walk; the next walk has the next seed. Default: the scenario's."
         ),
     ] = None,
     imu: Annotated[
         str | None,
-        typer.Option(help="IMU on the shoe: a name or your data sheet; the scenario says if left out."),
+        typer.Option(help="IMU on the shoe: a name or your data sheet. Default: the scenario's."),
     ] = None,
     methods: Annotated[
         str,
         typer.Option(
-            help="Methods to compare, separated by commas: names (see `footfall list`), your own as "
+            help="Methods to compare, separated by commas: names (see `footfall list`), or your own as "
             "NAME=FILE.py:FUNCTION (docs/methods.md)."
         ),
     ] = "pdr,hdr",
     units: Annotated[
         int,
-        typer.Option(min=0, help="So many other units of the IMU are scored too, shared among the walks."),
+        typer.Option(min=0, help="Number of further units of the IMU to score, spread over the walks."),
     ] = 50,
     noises: Annotated[
         int,
         typer.Option(
-            min=0, help="So many other noises of each walk's own unit are scored too, for what is chance."
+            min=0,
+            help="Number of further noise seeds to score for each walk's own unit.",
         ),
     ] = 10,
     detector: Annotated[
-        str | None, typer.Option(help="What tells that the foot is at rest; threshold if left out.")
+        str | None, typer.Option(help="Detector of rest (see `footfall list`). Default: threshold.")
     ] = None,
     bias_time: Annotated[
         float | None,
         typer.Option(
-            help="Seconds at rest over which gyro bias is averaged; the scenario says if left out.",
+            help="Time at rest over which the gyro bias is averaged, s. Default: the scenario's.",
             callback=finite,
         ),
     ] = None,
@@ -66,7 +67,8 @@ def run(
     reference: Annotated[
         float | None,
         typer.Option(
-            help="One of them, deg, counter-clockwise from x; if left out, that of the path's begin.",
+            help="One of the dominant directions, deg, counter-clockwise from x. Default: that in which the "
+            "path begins.",
             callback=finite,
             show_default=False,
         ),
@@ -76,15 +78,14 @@ def run(
     settings: SetOption = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for the results; out/SCENARIO if left out.", show_default=False),
+        typer.Option(help="Folder for the results. Default: out/SCENARIO.", show_default=False),
     ] = None,
     no_cache: NoCacheOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Do it all: walk a scenario, record it, navigate by each method and score the tracks.
+    """Run the whole chain: walk a scenario, record it, navigate by each method and score the tracks.
 
-    The folder gets report.html to look at, scores.json, every walk, recording and track (Parquet) and the
-    figures (PNG).
+    The results are report.html, scores.json, every walk, recording and track (Parquet) and the figures (PNG).
     """
     from footfall.cli.choices import dropped_effects, methods_of, told_directions
     from footfall.identity import plain

@@ -17,7 +17,7 @@ NAMES = ("walk.csv", "footprints.csv")
 def sample(
     folder: Annotated[Path, typer.Argument(help="Where to write them.")] = Path("."),
 ) -> None:
-    """Write a small recording, walk.csv, and where its footfalls truly were, footprints.csv.
+    """Write a small recording, walk.csv, and its true footfalls, footprints.csv.
 
     Half a minute around a square with a simulated consumer IMU on the instep, as a phone's logger writes it.
     """

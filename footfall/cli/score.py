@@ -15,9 +15,7 @@ from footfall.errors import InputError
 def score(
     track: Annotated[
         Path,
-        typer.Argument(
-            help="A track, ours or anyone's: Parquet or CSV with t, x, y, z, heading (s, m, rad)."
-        ),
+        typer.Argument(help="A track from any program: Parquet or CSV with t, x, y, z, heading (s, m, rad)."),
     ],
     walk: Annotated[
         Path | None, typer.Argument(help="The walk that was recorded.", show_default=False)
@@ -31,22 +29,22 @@ def score(
         ),
     ] = None,
     closed: Annotated[
-        bool, typer.Option("--closed", help="Instead of a walk: it was one that ended where it began.")
+        bool, typer.Option("--closed", help="Instead of a walk: the walk ended where it began.")
     ] = False,
     align: Annotated[
         str,
         typer.Option(
-            help="What is fitted first, by a shift on the plane and a turn: none, nothing; start, the first "
-            "row; yaw, the first row's position and the best turn; rigid, the best shift and turn. For "
-            "tracks of an unknown start."
+            help="For tracks of an unknown start, fit a shift on the plane and a turn first. none: nothing; "
+            "start: to the first row; yaw: shift to the first row's position, best turn; rigid: best shift "
+            "and turn."
         ),
     ] = "none",
     as_json: JsonOption = False,
 ) -> None:
     """Score a track against the true walk: heading and position errors.
 
-    Nothing is fitted, unless --align asks for it. Of a real recording nobody knows the true walk: it is
-    scored against measured --footprints, or as one that is --closed.
+    Nothing is fitted, unless --align asks for it. The true walk of a real recording is not known: score it
+    against measured --footprints, or as a --closed walk.
     """
     from footfall.pdr.track import read_track
     from footfall.scenarios.judge.reference import read_footprints, score_closure, score_footprints

@@ -17,27 +17,27 @@ def sensitivity(
     study: Annotated[
         str,
         typer.Argument(
-            help="Your study (docs/sensitivity.md), one that comes with Footfall, or `list` to see those.",
+            help="Your study (docs/sensitivity.md), the name of a stock study, or `list` to show the names.",
             show_default=False,
         ),
     ],
     fidelity: Annotated[
         str | None,
-        typer.Option(help="full: the whole chain; budget: by the drift budget; the study says if left out."),
+        typer.Option(help="full: the whole chain; budget: by the drift budget. Default: the study's."),
     ] = None,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes; one a core if left out.", show_default=False)
+        int | None, typer.Option(min=1, help="Number of processes. Default: one a core.", show_default=False)
     ] = None,
     scheduler: SchedulerOption = None,
     patience: PatienceOption = 600.0,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the results; out/STUDY if left out.", show_default=False)
+        Path | None, typer.Option(help="Folder for the results. Default: out/STUDY.", show_default=False)
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Tell which parameters a method's error depends on, alone and together (Morris, Sobol).
+    """Find the parameters that a method's error depends on, alone and together (Morris, Sobol).
 
-    The folder gets sensitivity.json, points.parquet and the figures (PNG). Needs footfall[study].
+    The results are sensitivity.json, points.parquet and the figures (PNG). Needs footfall\\[study].
     """
     from footfall.scenarios.report.progress import watching
     from footfall.scenarios.report.results import results_folder
@@ -63,7 +63,7 @@ def sensitivity(
     asked = read_study(study, {} if fidelity is None else {"fidelity": fidelity})
     folder = out or Path("out") / asked.name
     with working(scheduler, patience, workers) as crew, results_folder(folder):
-        with watching("points", "units heard") as (trials, (points, heard)):
+        with watching("points", "units recorded") as (trials, (points, heard)):
             watch = Watch(
                 workers=crew,
                 store=folder / "footfalls",

@@ -29,37 +29,33 @@ def sweep(
     study: Annotated[
         str,
         typer.Argument(
-            help="Your study (TOML, docs/sweeps.md), one that comes with Footfall, or `list` to see those.",
+            help="Your study (TOML, docs/sweeps.md), the name of a stock study, or `list` to show the names.",
             show_default=False,
         ),
     ],
-    plan: Annotated[bool, typer.Option("--plan", help="Tell what it would cost, and do nothing.")] = False,
-    units: Annotated[
-        int | None, typer.Option(min=1, help="So many units; the study says if left out.")
-    ] = None,
+    plan: Annotated[bool, typer.Option("--plan", help="Only print what the study would cost.")] = False,
+    units: Annotated[int | None, typer.Option(min=1, help="Number of units. Default: the study's.")] = None,
     walks: Annotated[
-        int | None, typer.Option(min=1, help="So many walks of each scenario; the study says if left out.")
+        int | None, typer.Option(min=1, help="Number of walks of each scenario. Default: the study's.")
     ] = None,
     settings: SetOption = None,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the results; out/STUDY if left out.", show_default=False)
+        Path | None, typer.Option(help="Folder for the results. Default: out/STUDY.", show_default=False)
     ] = None,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes at once; one a core if left out.", show_default=False)
+        int | None, typer.Option(min=1, help="Number of processes. Default: one a core.", show_default=False)
     ] = None,
     scheduler: SchedulerOption = None,
     patience: PatienceOption = 600.0,
-    retry_failed: Annotated[
-        bool, typer.Option("--retry-failed", help="Do again the tasks in which something failed.")
-    ] = False,
-    fresh: Annotated[bool, typer.Option("--fresh", help="Forget what was done before.")] = False,
+    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Run the failed tasks again.")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Delete earlier results first.")] = False,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if any row failed.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Do a study: as many walks, units, sheets, settings and methods as it says; each gives a row of scores.
+    """Run a study over walks, units, sheets, settings and methods: one table, a row of scores for each.
 
-    Start it again after whatever has ended it: what is done is not done again, and a changed study keeps the
-    parts that still belong to it. The folder gets report.html to look at, and results.parquet.
+    Start it again after an interruption: finished work is kept, and a changed study keeps the parts that
+    still belong to it. The results are report.html and results.parquet.
     """
     from footfall.scenarios.parameters import parsed
     from footfall.scenarios.studies.study import Study
@@ -189,7 +185,7 @@ def _stopping() -> Iterator[list[int]]:
         if asked:
             raise KeyboardInterrupt
         asked.append(number)
-        say("finishing the tasks in the making; once more ends at once")
+        say("finishing the running tasks; Ctrl-C again stops at once")
 
     before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
     try:

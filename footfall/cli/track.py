@@ -33,32 +33,32 @@ def track(
     method: Annotated[
         str | None,
         typer.Option(
-            help="How to navigate: a name (see `footfall list`), or your own as FILE.py:FUNCTION "
-            "(docs/methods.md); if left out, iez of a real recording, hdr of a simulated one.",
+            help="Method: a name (see `footfall list`), or your own as FILE.py:FUNCTION "
+            "(docs/methods.md). Default: iez for a real recording, hdr for a simulated one.",
             show_default=False,
         ),
     ] = None,
     detector: Annotated[
         str | None,
         typer.Option(
-            help="What tells that the foot is at rest (see `footfall list`); if left out, patient of a real "
-            "recording, threshold of a simulated one.",
+            help="Detector of rest (see `footfall list`). Default: patient for a real recording, threshold "
+            "for a simulated one.",
             show_default=False,
         ),
     ] = None,
     bias_time: Annotated[
         float | None,
         typer.Option(
-            help="Seconds at rest at the start, over which gyro bias is averaged; if left out, all rests "
-            "that there are, at most 25 s of the start.",
+            help="Time at rest at the start over which the gyro bias is averaged, s. Default: all rests of "
+            "the recording, at most 25 s of the start.",
             callback=finite,
         ),
     ] = None,
     heading: Annotated[
         float | None,
         typer.Option(
-            help="Heading of the IMU at rest before the walk, deg, counter-clockwise from x; if left out, "
-            "what a simulated recording says of it, else 0.",
+            help="Heading of the IMU at rest before the walk, deg, counter-clockwise from x. Default: that "
+            "of a simulated recording, else 0.",
             callback=finite,
             show_default=False,
         ),
@@ -67,15 +67,16 @@ def track(
         int | None,
         typer.Option(
             min=1,
-            help="How many dominant directions there are, evenly spaced, for a method that goes by them: 4 "
-            "if left out, 8 with diagonals.",
+            help="Number of dominant directions, evenly spaced, for methods that use them: 8 with diagonals. "
+            "Default: 4.",
             show_default=False,
         ),
     ] = None,
     reference: Annotated[
         float | None,
         typer.Option(
-            help="One of them, deg, counter-clockwise from x; if left out, that in which the walk sets out.",
+            help="One of the dominant directions, deg, counter-clockwise from x. Default: that in which the "
+            "walk sets out.",
             callback=finite,
             show_default=False,
         ),
@@ -84,13 +85,13 @@ def track(
     max_gap: Annotated[
         float | None,
         typer.Option(
-            help="Longest hole in a swing, s, that is bridged; its stride is doubtful. If left out, 0.25.",
+            help="Longest hole in a swing that is bridged, s. Its stride is marked doubtful. Default: 0.25.",
             callback=finite,
             show_default=False,
         ),
     ] = None,
     strict: Annotated[
-        bool, typer.Option("--strict", help="Refuse a track that is beyond the usual, in place of a warning.")
+        bool, typer.Option("--strict", help="Refuse an implausible track instead of a warning.")
     ] = False,
     format: FormatOption = "auto",
     columns: ColumnsOption = None,
@@ -98,10 +99,10 @@ def track(
     unit: UnitOption = None,
     rate: RateOption = None,
 ) -> None:
-    """Navigate: from a recording, simulated or real, to a track with one row a footfall.
+    """Navigate a recording, simulated or real: the track has one row a footfall.
 
-    The recording is judged by physics first; lost, doubled and clipped samples are told and handled. The
-    track says how plausible it is.
+    The recording is checked against physics first. Lost, doubled and clipped samples are mended and reported,
+    and so is how plausible the track is.
     """
     from footfall.hdr.tracking import track as navigate
     from footfall.pdr.reckoning import PdrParams

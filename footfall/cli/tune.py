@@ -17,42 +17,46 @@ def tune(
     study: Annotated[
         str,
         typer.Argument(
-            help="Your study (docs/tuning.md), one that comes with Footfall, or `list` to see those.",
+            help="Your study (docs/tuning.md), the name of a stock study, or `list` to show the names.",
             show_default=False,
         ),
     ],
     method: Annotated[
-        str | None, typer.Option(help="Method to tune; the study says if left out.", show_default=False)
+        str | None, typer.Option(help="Method to tune. Default: the study's.", show_default=False)
     ] = None,
     train: Annotated[
         str | None,
         typer.Option(
-            metavar="FROM..TO", help="Units to tune with; the study says if left out.", show_default=False
+            metavar="FROM..TO",
+            help="Units to tune with. Default: the study's.",
+            show_default=False,
         ),
     ] = None,
     test: Annotated[
         str | None,
         typer.Option(
-            metavar="FROM..TO", help="Units to judge with; the study says if left out.", show_default=False
+            metavar="FROM..TO",
+            help="Units to judge with. Default: the study's.",
+            show_default=False,
         ),
     ] = None,
     trials: Annotated[
-        int | None, typer.Option(min=2, help="Parameter sets to try; the study says if left out.")
+        int | None, typer.Option(min=2, help="Number of parameter sets to try. Default: the study's.")
     ] = None,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes; one a core if left out.", show_default=False)
+        int | None, typer.Option(min=1, help="Number of processes. Default: one a core.", show_default=False)
     ] = None,
     scheduler: SchedulerOption = None,
     patience: PatienceOption = 600.0,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the results; out/STUDY if left out.", show_default=False)
+        Path | None, typer.Option(help="Folder for the results. Default: out/STUDY.", show_default=False)
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Tune a method's parameters on some walks and units, and judge them on others beside the default.
+    """Tune a method's parameters on some walks and units, and judge them and the default on others.
 
-    The folder gets tuning.json, tuning.png and tuned.toml, which `--set @tuned.toml` takes. HDR is mapped;
-    other methods need footfall[study].
+    The results are tuning.json, tuning.png and tuned.toml, for `--set @tuned.toml`. Methods other than hdr
+    and hdr-basic need footfall\\[study].
     """
     from footfall.cli.choices import unit_range
     from footfall.scenarios.report.progress import watching
@@ -83,7 +87,7 @@ def tune(
     asked = read_tuning(study, changes)
     folder = out or Path("out") / asked.name
     with working(scheduler, patience, workers) as crew, results_folder(folder):
-        with watching("units heard", "sets tried") as (shown, (heard, tried)):
+        with watching("units recorded", "sets tried") as (shown, (heard, tried)):
             tuned = perform_tuning(
                 asked, workers=crew, folder=folder, on_cases=heard, on_trials=shown, on_tried=tried
             )

@@ -22,32 +22,32 @@ def walk(
         ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(min=0, help="Seed of this walk; the scenario says if left out.")
+        int | None, typer.Option(min=0, help="Seed of this walk. Default: the scenario's.")
     ] = None,
     number: Annotated[
-        int, typer.Option(min=1, help="Which of the scenario's walks: its subject and its seed.")
+        int, typer.Option(min=1, help="Which of the scenario's walks. It decides subject and seed.")
     ] = 1,
     rate: Annotated[
         float | None,
         typer.Option(
-            help="Samples per second (Hz), a divisor of 1000; the scenario says if left out.",
+            help="Sampling rate, Hz, a divisor of 1000. Default: the scenario's.",
             callback=finite,
         ),
     ] = None,
     mount: Annotated[
         str | None,
         typer.Option(
-            help="Where on the shoe the IMU sits (see `footfall list`); the scenario says if left out. "
-            "Several by commas are one walk in a file each: walk-heel.parquet."
+            help="Place of the IMU on the shoe (see `footfall list`). Default: the scenario's. Several by "
+            "commas are one walk in a file each: walk-heel.parquet."
         ),
     ] = None,
     view: Annotated[
-        bool, typer.Option("--view", help="Watch it first in MuJoCo's viewer, which needs a screen.")
+        bool, typer.Option("--view", help="First show the walk in MuJoCo's viewer, which needs a screen.")
     ] = False,
     settings: SetOption = None,
     no_cache: NoCacheOption = False,
 ) -> None:
-    """Walk a scenario once and write the truth: where the IMU was, and what a perfect one would say.
+    """Walk a scenario once and write the truth: the motion of the IMU and the signals of a perfect one.
 
     The true footfalls go into a second file: walk.parquet and walk.footfalls.parquet.
     """

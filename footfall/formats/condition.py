@@ -46,7 +46,7 @@ class Findings:
     restamped : whether the stamps were replaced by evenly spaced ones
     clipped : channel -> samples held at its extreme; those of gyros were restored
     notes : what was wrong with the file itself
-    misclosure_g : g, velocity that a stride leaves over its duration, median; None where nobody looked
+    misclosure_g : g, velocity that a stride leaves over its duration, median; None where it was not computed
     """
 
     format: str

@@ -1,4 +1,4 @@
-"""Holes between samples: bridged by straight lines, as far as that says nothing that nobody knows."""
+"""Holes between samples: bridged by straight lines where that is harmless."""
 
 from __future__ import annotations
 

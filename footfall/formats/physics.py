@@ -25,7 +25,7 @@ STILL_S = 0.06
 REST = 0.35  # shares of RMS: stances have .03-.15, the quietest of swing .45
 STRIDES = (5, 40)  # so many are needed, so many are looked at
 GYRO_RMS = (0.02, 60.0)  # rad/s, of a walking foot
-FORCE_SPREAD = 1.0  # m/s2: less, and nobody walks
+FORCE_SPREAD = 1.0  # m/s2: less is no walk
 
 _FORCES = (
     (1.0, "they are probably in g"),
@@ -142,7 +142,7 @@ def check_walk(recording: Recording) -> float | None:
     spread = float(np.linalg.norm(recording.accel, axis=1).std())
     rms = math.sqrt(np.mean(recording.gyro**2) * 3)
     if spread < FORCE_SPREAD:
-        return None  # nobody walks: dead reckoning will say so
+        return None  # no walk: dead reckoning will say so
     if not GYRO_RMS[0] <= rms <= GYRO_RMS[1]:
         cause = "deg/s" if rms > GYRO_RMS[1] else "rad/s, and were taken for deg/s"
         raise InputError(

@@ -86,7 +86,7 @@ def read(
     reading: Reading | None = None,
     walk: bool = True,
 ) -> tuple[Recording, Findings]:
-    """Read a recording whole, mend its samples (`condition`) and judge it by physics.
+    """Read a whole recording, mend its samples (`condition`) and check it against physics.
 
     Parameters
     ----------

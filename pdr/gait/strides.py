@@ -155,7 +155,7 @@ def mirrored(signals: Signals) -> Signals:
 
 
 def swings(signals: Signals, first: int, last: int) -> bool:
-    """A stride, with a push-off before its swing, and not a shuffle of someone who stops."""
+    """A stride, with a push-off before its swing, and not a shuffle before a stop."""
     pitch = signals.gyro[first : last + 1, 1]
     swing = int(np.argmin(pitch))
     return bool(pitch[swing] < -_SWING_RATE and pitch[: swing + 1].max() > _SWING_RATE)

@@ -1,4 +1,4 @@
-"""How far off a track is where nobody knows the whole truth: from measured footprints, or from its start.
+"""Errors of a track whose true walk is not known: from measured footprints, or from its start.
 
 Of a real recording there is no true walk. Some have footprints that were measured, in a frame of their own;
 others end where they began. Positions and distances are horizontal, of the IMU.

@@ -97,10 +97,10 @@ class Poses(Protocol):
 
 
 def compare(track: Track, walk: Poses, align: Align = "none") -> Comparison:
-    """Put a track beside the truth at its times.
+    """Compare a track with the truth at the track's times.
 
-    The true heading is read at the track's rows alone: between stances the foot pitches through the vertical,
-    where heading means nothing. Whole turns are told by the walk's own footfalls, so that an error of more
+    The true heading is read at the track's rows only: between stances the foot pitches through the vertical,
+    where heading means nothing. Whole turns are counted by the walk's own footfalls, so that an error of more
     than half a turn is not mistaken for a small one.
 
     Parameters
@@ -144,7 +144,7 @@ def _motion(estimate: np.ndarray, truth: np.ndarray, off: float, align: Align) -
 
 
 def score(track: Track, walk: Walk, align: Align = "none") -> Score:
-    """Judge a track against the walk that it was made from.
+    """Score a track against its true walk.
 
     Parameters
     ----------

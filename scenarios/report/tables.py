@@ -138,7 +138,7 @@ def noises_table(results: Sequence[Result]) -> Group | None:
             for found in errors.values():
                 cells += [f"{found['median']:.1f}", f"{found['smallest']:.1f} to {found['largest']:.1f}"]
             table.add_row(walk, name, *cells, style="bold" if walk == "mean" else None)
-    return titled(f"The same walks and units heard through {len(means)} other noises each (deg)", table)
+    return titled(f"The same walks and units with {len(means)} other noise seeds each (deg)", table)
 
 
 def others_table(results: Sequence[Result]) -> Group | None:

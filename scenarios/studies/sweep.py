@@ -67,16 +67,16 @@ def sweep(
     on_progress: Callable[[Progress], None] = lambda now: None,
     command: str = "",
 ) -> Iterator[Progress]:
-    """Do a study, or what is left of it.
+    """Run a study, or what is left of it.
 
     Parameters
     ----------
     study : or its name or file, or its plan
     folder : of its results; out/NAME when None
-    executor : processes, one a core when None; a cluster; or what performs tasks as `local.spread` does
-    fresh : forget what is there
-    retry_failed : do again what has failed
-    stop : asked now and then; once it is true, tasks in the making are finished, and the rest is left
+    executor : processes, one a core when None; a cluster; or a callable as `local.spread`
+    fresh : delete what is there
+    retry_failed : run failed tasks again
+    stop : called now and then; once true, running tasks are finished, and the rest is left
     on_progress : called some times a second
     command : that makes the study again, for its document
 

@@ -109,7 +109,7 @@ class Done:
     ----------
     rows : by unit, setting and method; keys : of the cell of each
     seconds : by stage, and "all"; host : where
-    tracebacks : of exceptions that were nobody's refusal
+    tracebacks : of unexpected exceptions
     """
 
     task: Task
@@ -151,7 +151,7 @@ def do(task: Task, walks: Path | None = None, store: Path | None = None, walk: W
         return _done(task, walks, store, walk)
     except DiskFullError:
         raise
-    except Exception as error:  # outside of any trial: nobody's refusal, but no reason to end the others
+    except Exception as error:  # outside of any trial: unexpected, but no reason to end the others
         _require_room(error)
         reason = InputError(f"{type(error).__name__}: {(str(error).splitlines() or [''])[0]}")
         return replace(lost(task, reason, "worker"), tracebacks="".join(traceback.format_exception(error)))

@@ -33,6 +33,11 @@ def test_every_command_explains_itself_and_each_of_its_arguments(cli, name):
             assert parameter.name in out or any(option in out for option in parameter.opts)
 
 
+@pytest.mark.parametrize(("name", "text"), [("run", "[set]"), ("map", "[set]"), ("tune", "[study]")])
+def test_brackets_of_a_help_text_are_shown_and_are_no_style(cli, name, text):
+    assert text in cli(f"{name} --help")[1]
+
+
 def test_without_a_command_it_shows_them_all(cli):
     code, out, err = cli("")
     assert (code, err) == (0, "")

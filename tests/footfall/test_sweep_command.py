@@ -216,7 +216,7 @@ def test_a_signal_lets_the_running_tasks_end(place, number):
     process.send_signal(number)
     _, err = process.communicate()
     assert process.returncode == 130, err
-    assert "finishing the tasks in the making" in err
+    assert "finishing the running tasks" in err
     assert "recordings are done; start it again to go on" in err
     assert 0 < len(parts(place)) < 6
     assert not (place / "out" / "small" / "results.parquet").exists()

@@ -195,7 +195,7 @@ def test_other_units_and_noises_are_told_where_a_run_has_them(tmp_path):
     }
     page = Page(write_page(run_folder(tmp_path / "run", ("pdr",), 1, **more)))
     assert page.table("50 other units")[1] == ["pdr", "3.0", "2.5", "7.2", "3.0", "2.5", "7.2"]
-    assert page.table("10 other noises")[1] == ["pdr", "2.5", "1.0", "9.0", "2.5", "1.0", "9.0"]
+    assert page.table("10 other noise seeds")[1] == ["pdr", "2.5", "1.0", "9.0", "2.5", "1.0", "9.0"]
     assert "switched off: white, flicker" in page.text
     assert len(page.table("Each walk")) == 2  # of one walk, no mean
 

@@ -139,8 +139,8 @@ def test_other_noises_are_told_by_walk_and_of_the_mean(walked):
     """Median and extent over the noises; of the mean over the walks, not the mean of medians."""
     results = several(walked, 3)
     text = printed(*run_report("short", results))
-    assert "through 3 other noises each" in text
-    rows = [line.split() for line in text[text.index("3 other noises") :].splitlines()]
+    assert "with 3 other noise seeds each" in text
+    rows = [line.split() for line in text[text.index("3 other noise seeds") :].splitlines()]
     found = {(row[0], row[1]): row[2:] for row in rows if row[1:2] in (["pdr"], ["hdr"])}
     for walk, (median, low, high) in {
         "1": (2.0, 1.0, 9.0),

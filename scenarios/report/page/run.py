@@ -133,7 +133,11 @@ def _figures(
     causes: Mapping[str, str],
 ) -> str:
     shown = {str(i + 1): f"{i + 1}, unit {row['unit']}" for i, row in enumerate(rows[:MOST_WALKS])}
-    few = f"The first {MOST_WALKS} walks are drawn; the tables tell of all." if len(rows) > MOST_WALKS else ""
+    few = (
+        f"The first {MOST_WALKS} walks are drawn; the tables have all walks."
+        if len(rows) > MOST_WALKS
+        else ""
+    )
     return (
         html.controls(
             html.radios("walk", "Walk", shown),
@@ -144,7 +148,7 @@ def _figures(
         + html.figure(
             "map",
             "Map",
-            "Seen from above, as long along x as along y. Wide and grey: the true walk from the triangle on. "
+            "Seen from above, both axes at one scale. Wide and grey: the true walk, from the triangle on. "
             "Each point is a footfall, the large one the last.",
             kind="wide",
         )
@@ -155,13 +159,13 @@ def _figures(
             "drift",
             "Drift and correction",
             "Grey: the true drift of the gyro about the vertical, mean of 25 strides. Coloured: what each "
-            "method takes for drift: -I of HDR, of others the rate at which they turn PDR's heading back. "
-            "Where one jumps, it leaves the frame.",
+            "method takes for drift: -I for HDR, for others the rate at which they turn PDR's heading back. "
+            "Jumps leave the frame.",
         )
         + html.figure(
             "budget",
             "Drift budget",
-            "What turned the uncorrected heading: the drift of each cause, summed up over the strides. "
+            "The causes of the uncorrected heading error: the drift of each, summed over the strides. "
             "Small causes are taken together.",
             kind="wide",
             legend=html.legend(
@@ -304,7 +308,7 @@ def _scores(told: Mapping[str, Any], rows: Sequence[Mapping[str, Any]], methods:
         ("other_units", "{} other units of the same sheet on the same walks", ("mean", "median", "p90")),
         (
             "other_noises",
-            "Mean over the walks, heard through {} other noises",
+            "Mean over the walks, with {} other noise seeds",
             ("median", "smallest", "largest"),
         ),
     ):

@@ -117,8 +117,8 @@ def _figures(panels: Sequence[_Panel], looks: Looks, rows: int) -> str:
             html.boxes("method", "Methods", looks),
         )
         + html.paragraph(
-            "Each panel is over one axis and takes all values of the others together. Small: a case each. "
-            "Filled: the median. Open: nine of ten cases are below. A dotted line without marks: the median "
+            "Each panel has one axis and takes all values of the others together. Small marks: cases. "
+            "Filled: the median. Open: the 90th percentile. A dotted line without marks: the median "
             f"of a method that has no such setting.{few}"
         )
         + '<div class="charts">'
