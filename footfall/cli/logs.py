@@ -55,7 +55,8 @@ def start_log(verbose: bool, file: Path | None) -> Callable[[], None]:
         log.addHandler(handler)
 
     def end() -> None:
-        if isinstance(error := sys.exc_info()[1], InputError):  # is printed later, when this log has ended
+        # It is printed later, when this log has ended; without a log, logging itself would print it too.
+        if handlers and isinstance(error := sys.exc_info()[1], InputError):
             logging.getLogger(SAID).error("%s", error)
         for handler in handlers:
             log.removeHandler(handler)

@@ -35,7 +35,7 @@ def test_the_program_ends_with_code_2_and_one_sentence(here):
 
 
 def test_a_shell_completes_commands(tmp_path):
-    asked = {"_FOOTFALL_COMPLETE": "complete_bash", "COMP_WORDS": "footfall sc", "COMP_CWORD": "1"}
+    asked = {"_FOOTFALL_COMPLETE": "complete_bash", "COMP_WORDS": "footfall sco", "COMP_CWORD": "1"}
     process = shell("", tmp_path, env=os.environ | asked)
     out, err = process.communicate()
     assert (process.returncode, out.split(), err) == (0, ["score"], "")
