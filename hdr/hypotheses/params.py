@@ -98,7 +98,7 @@ class HypothesesParams:
     along: float = setting(0.9, gt=0, lt=1)
     along_anew: float = setting(0.4, gt=0, lt=1)
     beside: float = setting(1.0 * DEG, unit="rad", gt=0)
-    hypotheses: int = setting(80, ge=4, le=1024)
+    hypotheses: int = setting(64, ge=4, le=1024)
     prune: float = setting(25.0, gt=0)
     sprout: float = setting(12.0, gt=0)
     merge: float = setting(0.4, ge=0)
