@@ -192,14 +192,29 @@ def _long(
         footfalls, used = dead_reckon_blocks(blocks, params, start, rest_time=rest)
         return footfalls
 
+    given = StreamedReckoning(run_through, start, counted)
     try:
-        found = chosen.track(StreamedReckoning(run_through, start, counted))
+        found = chosen.track(given)
     except InputError as error:
         raise error.about(source.path, "recording") from None
     findings = blocks.findings
+    likely = _likely(given.footfalls, findings)
+    simulated = is_simulated(source.meta)
+    if not simulated and likely.impossible():
+        raise _with_losses(InputError(likely.impossible(), source.path), findings)
     origin = {**source.meta, "read": findings.as_dict()}
+    found = told(found, origin, replace(params, bias_s=used), start)
+    found = replace(found, meta={**found.meta, "plausibility": likely.as_dict()})
     notes = (f"too long to be held at once: navigated by {usual}",) if usual else ()
-    return Tracked(told(found, origin, replace(params, bias_s=used), start), findings, used, notes=notes)
+    return Tracked(found, findings, used, likely, notes, () if simulated else tuple(warned(likely, findings)))
+
+
+def _likely(footfalls: Footfalls, findings: Findings) -> Plausibility:
+    """Of a recording that is not held at once, by its footfalls: what velocity is left is not known."""
+    strides = footfalls.strides
+    movement = np.diff(footfalls.t) if strides is None else strides.moving[1:]
+    spoilt = spoilt_share(findings.as_dict())
+    return judge_track(footfalls.t, footfalls.position, None, float(movement.max(initial=0.0)), spoilt)
 
 
 def _judged(track: Track, given: Reckoning, findings: Findings) -> tuple[Plausibility, Track]:

@@ -148,6 +148,26 @@ def write_rows(file, recording, rows):
     pq.write_table(pa.table(columns), file)
 
 
+def test_a_track_in_blocks_says_how_plausible_it_is(tmp_path, monkeypatch):
+    truth = walk(np.zeros(12), still_s=6.0, rate=200.0)
+    file = tmp_path / "long.parquet"
+    write_recording(Recording(truth.t, truth.gyro, truth.accel), file)
+    whole = track(file, "pdr", bias_s=5.0, detector="threshold").plausibility
+    monkeypatch.setattr("footfall.hdr.tracking.WHOLE_ROWS", 1000)
+    result = track(file, "pdr", bias_s=5.0, detector="threshold")
+    found = result.plausibility
+    assert result.track.meta["plausibility"] == found.as_dict()
+    assert (found.strides, result.warnings) == (whole.strides, ())
+    assert found.longest_stride_m == pytest.approx(whole.longest_stride_m)
+    assert found.height_m == pytest.approx(whole.height_m, abs=1e-6)
+    # From the quietest instant of a stance to that of the next: longer by parts of two stances.
+    assert 0 <= found.longest_movement_s - whole.longest_movement_s < 1.0
+    giant = walk(np.zeros(12), stride=4.0, still_s=6.0, rate=200.0)
+    write_recording(Recording(giant.t, giant.gyro, giant.accel), file)
+    with pytest.raises(InputError, match="legs make at most"):
+        track(file, "pdr", bias_s=5.0, detector="threshold")
+
+
 @pytest.mark.parametrize("format", ["footfall", "matlab"])
 def test_a_file_is_opened_once(tmp_path, monkeypatch, format):
     """What is gone after it was opened could not be read again."""
