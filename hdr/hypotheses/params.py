@@ -82,7 +82,7 @@ class HypothesesParams:
     tight: float = setting(2.5 * DEG, unit="rad/m", gt=0)
     gentle_chance: float = setting(0.6, gt=0, lt=1)
     bending: float = setting(0.0003 * DEG, unit="rad/m/rt-m", ge=0)
-    straight_turn: tuple[float, ...] = setting((0.01, 0.01, 0.01, 0.01, 0.05), gt=0, lt=0.5)
+    straight_turn: tuple[float, ...] = setting((0.01, 0.01, 0.01, 0.01, 0.04), gt=0, lt=0.5)
     curve_straight: float = setting(0.006, gt=0, lt=0.3)
     curve_turn: float = setting(0.01, gt=0, lt=0.3)
     curve_curve: float = setting(0.0025, gt=0, lt=0.3)
