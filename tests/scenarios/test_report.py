@@ -157,7 +157,7 @@ def test_other_noises_are_told_by_walk_and_of_the_mean(walked):
     assert document["other_noises"]["methods"]["hdr"][key] == extent([49 / 3, 45 / 3, 29 / 3])
     assert document["walks"][1]["noise"] == results[1].trial.noise_seed
     silent = [replace(result, noises=()) for result in results]
-    assert "other noises" not in printed(*run_report("short", silent))
+    assert "other noise seeds" not in printed(*run_report("short", silent))
     assert "other_noises" not in json.dumps(run_document("short", silent))
 
 

@@ -215,7 +215,7 @@ def test_one_walk_in_the_folder_and_on_the_terminal(cli, here):
     assert scores["other_units"]["count"] == 2
     assert "2 other units" in out
     assert scores["other_noises"]["count"] == row["other_noises"]["count"] == 3
-    assert "3 other noises" in out
+    assert "3 other noise seeds" in out
     for figure in FIGURES:
         with Image.open(folder / figure) as image:
             assert image.width > 600
