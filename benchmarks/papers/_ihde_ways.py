@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -11,11 +12,13 @@ from typing import Any
 import numpy as np
 
 from benchmarks._common import outcomes
+from footfall.errors import InputError
 from footfall.hdr.method import Method
 from footfall.hdr.methods import METHODS
 from footfall.hdr.tracks import Reckoning
 from footfall.pdr.track import Track
 from footfall.scenarios.scenario import Scenario
+from footfall.scenarios.studies.tune import require_apart
 from footfall.scenarios.trial import Row, Setup, Trial, setup
 
 Key = tuple[str, float]
@@ -109,3 +112,25 @@ def _key(scenario: Scenario) -> Key:
 def _errors(row: Row) -> tuple[float, float, float]:
     score = row.require()
     return score.return_error_pct, score.heading_error_mean_deg, score.heading_error_final_deg
+
+
+def take_walks(parser: argparse.ArgumentParser) -> None:
+    """Options of the walks to tune and to judge on."""
+    for name, default, text in (
+        ("walks", 20, "walks of each test to judge on"),
+        ("walk-seed", 1, "of the first of them and its unit"),
+        ("tuning-walks", 6, "walks of each test to tune on"),
+        ("tuning-seed", 101, "of the first of them and its unit"),
+    ):
+        parser.add_argument(f"--{name}", type=int, default=default, help=f"{text} (default {default})")
+
+
+def walks_of(chosen: argparse.Namespace) -> tuple[range, range]:
+    """Seeds to tune and to judge on, of which none is the same."""
+    tuning = range(chosen.tuning_seed, chosen.tuning_seed + chosen.tuning_walks)
+    seeds = range(chosen.walk_seed, chosen.walk_seed + chosen.walks)
+    try:
+        require_apart("walk seed", tuning, seeds)
+    except InputError as error:
+        raise SystemExit(str(error)) from None
+    return tuning, seeds

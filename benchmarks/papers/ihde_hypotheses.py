@@ -19,13 +19,12 @@ import numpy as np
 
 from benchmarks._common import options, write_json
 from benchmarks._page import Sheet, by_name, fill
-from benchmarks.papers._ihde_ways import Job, Way, judge
+from benchmarks.papers._ihde_ways import Job, Way, judge, take_walks, walks_of
 from benchmarks.papers.ihde_table2 import TESTS
-from footfall.errors import InputError
 from footfall.hdr.hypotheses.params import HypothesesParams
 from footfall.scenarios.judge.papers import IHDE_TABLE_2, range_text
 from footfall.scenarios.scenario import load_scenario
-from footfall.scenarios.studies.tune import require_apart, smallest
+from footfall.scenarios.studies.tune import smallest
 from footfall.scenarios.trial import UNSURE
 
 METHODS = ("hypotheses", "hypotheses-smooth")
@@ -95,21 +94,10 @@ def in_words(params: HypothesesParams) -> str:
 def main() -> None:
     """Tune, judge, tell."""
     parser = options(__doc__)
-    for name, default, text in (
-        ("walks", 20, "walks of each test to judge on"),
-        ("walk-seed", 1, "of the first of them and its unit"),
-        ("tuning-walks", 6, "walks of each test to tune on"),
-        ("tuning-seed", 101, "of the first of them and its unit"),
-    ):
-        parser.add_argument(f"--{name}", type=int, default=default, help=f"{text} (default {default})")
+    take_walks(parser)
     parser.add_argument("--page", type=Path, metavar="MD", help="fill the tables of this page")
     args = parser.parse_args()
-    seeds = range(args.walk_seed, args.walk_seed + args.walks)
-    tuning = range(args.tuning_seed, args.tuning_seed + args.tuning_walks)
-    try:
-        require_apart("walk seed", tuning, seeds)
-    except InputError as error:
-        raise SystemExit(str(error)) from None
+    tuning, seeds = walks_of(args)
     chosen = tune(tuning, args.processes)
     ways = {"`pdr`": Way("pdr"), "`ihde-plus`": Way("ihde-plus")}
     for words, params in {"": None, ", told": told(), ", told, close": chosen}.items():

@@ -27,8 +27,7 @@ import numpy as np
 from benchmarks._common import options, write_json
 from benchmarks._page import by_name, fill
 from benchmarks.papers._ihde_page import loop_table, setting_table, table_2, variant_table
-from benchmarks.papers._ihde_ways import Job, Way, judge
-from footfall.errors import InputError
+from benchmarks.papers._ihde_ways import Job, Way, judge, take_walks, walks_of
 from footfall.hdr.hde import Hde2010Params, HdeParams
 from footfall.hdr.ihde import IhdeParams
 from footfall.hdr.ihde_plus import IhdePlusParams
@@ -36,7 +35,7 @@ from footfall.hdr.jimenez import FilterHdrParams, JimenezParams
 from footfall.hdr.step_heading import HeadingSource
 from footfall.scenarios.judge.papers import IHDE_TABLE_2
 from footfall.scenarios.scenario import Scenario, load_scenario
-from footfall.scenarios.studies.tune import grid, require_apart, smallest
+from footfall.scenarios.studies.tune import grid, smallest
 
 TESTS = tuple(IHDE_TABLE_2)
 GAITS: Mapping[str, float] = {"people": 1.0, "line": 0.3}  # variability
@@ -181,11 +180,8 @@ def settings_in_words(tuned: Tuned) -> dict[str, tuple[str, str]]:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Tune, judge, print, write."""
     parser = options(__doc__)
+    take_walks(parser)
     for name, default, text in (
-        ("walks", 20, "walks of each test to judge on"),
-        ("walk-seed", 1, "of the first of them and its unit"),
-        ("tuning-walks", 6, "walks of each test to tune on"),
-        ("tuning-seed", 101, "of the first of them and its unit"),
         ("loop-walks", 3, "walks of the closed loop (0: none)"),
         ("loop-units", 8, "units on each of them"),
     ):
@@ -193,13 +189,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--page", type=Path, metavar="MD", help="put the tables into this page")
     parser.add_argument("--figures", type=Path, metavar="FOLDER", help="draw figures there")
     chosen = parser.parse_args(arguments)
-    seeds = range(chosen.walk_seed, chosen.walk_seed + chosen.walks)
-    tuning = range(chosen.tuning_seed, chosen.tuning_seed + chosen.tuning_walks)
-    try:
-        require_apart("walk seed", tuning, seeds)
-    except InputError as error:
-        raise SystemExit(str(error)) from None
-
+    tuning, seeds = walks_of(chosen)
     scenarios = {test: load_scenario(test) for test in TESTS}
     tuned = tune(scenarios, tuning, chosen.processes)
     ways, variants, loop_ways = tuned.ways(), tuned.variants(), tuned.loop()
