@@ -1,12 +1,14 @@
 """A sheet that is fitted to a rest is that of the sensor which rested."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from footfall.errors import InputError
 from footfall.models.imu import draw_unit, load_spec
 from footfall.recording import Recording, write_recording
-from footfall.scenarios.fitted_sheet import resolution_of, sheet_text, write_sheet
+from footfall.scenarios.fitted_sheet import noise_of, resolution_of, sheet_text, write_sheet
 from footfall.scenarios.report.allan import resting_recording
 from tests.helpers.commands import content, expect_one_sentence
 
@@ -25,6 +27,14 @@ def test_the_noises_of_a_sheet_are_found_again(name, tmp_path):
         assert mine.range == np.inf
     bias = resting.gyro.mean(axis=0)
     assert found.gyro.turn_on_sigma == pytest.approx(np.sqrt(bias @ bias / 3), rel=1e-3)
+
+
+def test_the_floor_of_the_allan_deviation_is_two_thirds_of_the_flicker(monkeypatch):
+    """IEEE Std 952: sigma = 0.664 B. What a simulation tells of it scatters far more."""
+    found = SimpleNamespace(white=0.0, floor=0.664, random_walk=0.0)
+    monkeypatch.setattr("footfall.scenarios.fitted_sheet.fit_allan", lambda x, interval: found)
+    values = np.random.default_rng(1).normal(size=(100, 3))  # of no resolution
+    assert noise_of(values, 0.01) == {"flicker": pytest.approx(1.0, abs=1e-3)}
 
 
 def test_the_resolution_is_the_step_of_what_is_written():
