@@ -14,8 +14,6 @@ from footfall.recording import Recording
 from footfall.tables import replacing
 
 FLOOR_OF_FLICKER = math.sqrt(2 * math.log(2) / math.pi)  # IEEE Std 952: floor of the Allan deviation, in B
-    2 * math.log(2) / math.pi
-)  # IEEE Std 952: the floor of the Allan deviation, in B
 
 
 def noise_of(x: np.ndarray, interval: float) -> dict[str, float]:
