@@ -256,10 +256,12 @@ def warned(likely: Plausibility, findings: Findings) -> list[str]:
     """What is beyond the usual of a track and its recording."""
     said = likely.warnings()
     off = findings.misclosure_g
-    if off is not None and off > USUAL_MISCLOSURE:
+    if findings.cause:
+        said.append(f"turned by its gyros, gravity does not stay vertical: probably {findings.cause}")
+    elif off is not None and off > USUAL_MISCLOSURE:
         said.append(
             f"turned by its gyros, gravity stays vertical to {off:.2g} g only, usual are at most "
-            f"{USUAL_MISCLOSURE:g}: the rate or a unit may be wrong, or the accelerometers lag"
+            f"{USUAL_MISCLOSURE:g}: a unit or an axis may be wrong, samples spoilt, or the mount slips"
         )
     if likely.doubtful:
         said.append(f"{likely.doubtful} strides are doubtful: samples are lost in their swings")

@@ -17,7 +17,7 @@ from footfall.formats.explain import not_understood
 from footfall.formats.files import HEAD_BYTES, Content
 from footfall.formats.layout import Header, Layout, find_layouts
 from footfall.formats.options import Reading
-from footfall.formats.samples import Samples, Source
+from footfall.formats.samples import MIRRORED, Samples, Source
 from footfall.formats.stamps import DAY, Clock, is_stamp, likely_unit, seconds
 from footfall.formats.text import Batch, TextTable, floats, row_bytes
 from footfall.formats.units import UNITS
@@ -162,6 +162,8 @@ class _Rows:
         if self.reading.sensor is not None and self.layout.id and self.reading.sensor not in self.sensors:
             names = ", ".join(self.sensors) or "none"
             raise InputError(f"holds no sensor {self.reading.sensor!r}, but {names}", self.path)
+        if self.layout.mirrored:
+            self.notes.append(MIRRORED)
         if self.clock.rounds:
             self.notes.append(f"t starts anew {self.clock.rounds} times: made to go on")
 
@@ -221,7 +223,7 @@ class _Rows:
             if channel != "t"
         }
         gyro = np.column_stack([found[name] for name in GYRO])
-        accel = np.column_stack([found[name] for name in ACCEL])
+        accel = np.column_stack([found[name] for name in ACCEL]) * (-1 if layout.mirrored else 1)
         distrusted = np.zeros(len(gyro), dtype=bool)
         for name in layout.valid:
             distrusted |= batch[name] == 0

@@ -8,7 +8,7 @@ from hypothesis.extra import numpy as hnp
 from scipy.signal import find_peaks
 from scipy.spatial.transform import Rotation
 
-from footfall.formats.physics import lowest, upright
+from footfall.formats.closure import lowest, upright
 
 # Few different values make plateaus and ties; steps of an eighth are exact.
 heights = hnp.arrays(float, st.integers(1, 60), elements=st.integers(0, 7).map(lambda k: k / 8))
