@@ -167,7 +167,7 @@ def track(
         likely, found = _judged(found, given, findings)
     except InputError as error:
         raise _with_losses(error.about(source.path, "recording"), locals().get("findings")) from None
-    warnings = () if simulated else tuple(warned(likely, findings))
+    warnings = () if simulated else tuple(warned(likely, findings, rest))
     if not simulated and likely.impossible():
         raise _with_losses(InputError(likely.impossible(), source.path), findings)
     return Tracked(found, findings, params.bias_s, likely, tuple(notes), warnings)
@@ -252,9 +252,14 @@ def _judged(track: Track, given: Reckoning, findings: Findings) -> tuple[Plausib
     )
 
 
-def warned(likely: Plausibility, findings: Findings) -> list[str]:
-    """What is beyond the usual of a track and its recording."""
+def warned(likely: Plausibility, findings: Findings, rest: Rest | None = None) -> list[str]:
+    """What is beyond the usual of a track, its recording, and its rests."""
     said = likely.warnings()
+    if rest is not None and rest.changed:
+        said.append(
+            f"the gyros' bias changes by {np.degrees(rest.changed):.2g} deg/s between rests: "
+            "headings are as uncertain"
+        )
     off = findings.misclosure_g
     if findings.cause:
         said.append(f"turned by its gyros, gravity does not stay vertical: probably {findings.cause}")

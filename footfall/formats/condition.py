@@ -123,6 +123,7 @@ class Findings:
         return asdict(self) | {"clipped": dict(self.clipped)}
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what overflows is refused, or left out as impossible
 def condition(
     samples: Samples, format: str, *, whole: bool = True, gap_s: float = FILL_S, doubted: bool = True
 ) -> tuple[Samples, Findings]:

@@ -24,8 +24,9 @@ RISE = 0.012  # g, vertical velocity that strides leave: above it a lag or a wro
 MISFIT = 0.04  # g, of the whole velocity: likewise
 LAG_S = 0.015  # a smaller one may be a bias of the accelerometers
 SCALE = 0.045  # likewise, from 1
+CLOSED = (0.0045, 0.055)  # g, along the vertical and in all: no more is left where the cause is the cause
 CLEARLY = 1.5  # times by which one cause must close strides better than the other, or both are named
-BIASED = 0.03  # g, of the vertical velocity: so much biases of accelerometers may explain
+BIASED = 0.03  # g, of the vertical velocity: so much biases may explain
 MENDED = (0.015, 0.25)  # g, and share of it that is left, for a lag to be put right
 LEVEL = 0.05  # share of g by which the force at rest may differ for the accelerometers not to be the cause
 _LAGS = np.arange(-0.12, 0.121, 0.01)  # s
@@ -132,7 +133,9 @@ def _late_or_scaled(
         return found
     lag, scale = _fits(part, moved)
     best = min(lag, scale, key=lambda one: one.left)
-    if best.rise > rise / 2 or best.misclosure >= least:
+    if best.rise > min(rise / 2, CLOSED[0]) or best.misclosure > min(
+        least, CLOSED[1], 1.1 * found.misclosure
+    ):
         return found
     likely = lag.left < CLEARLY * best.left, scale.left < CLEARLY * best.left
     beyond = abs(lag.value) >= LAG_S, abs(scale.value - 1) >= SCALE
@@ -146,7 +149,7 @@ def _late_or_scaled(
     causes.append(f"samples came at {rate / scale.value:.3g} Hz, not {rate:.3g}")
     causes.append(f"the rates are {1 / scale.value:.2f} times what they should be")
     if likely[0] or rise < BIASED:
-        causes.append("the accelerometers are biased")
+        causes.append("a sensor is biased")
     return replace(found, cause=", or ".join(causes))
 
 
@@ -194,6 +197,8 @@ _ROUND = {"y, z, x": (1, 2, 0), "z, x, y": (2, 0, 1)}
 # rates that fit it have the other two axes turned. Exchanging two axes mirrors them too.
 CHANGES: Mapping[str, np.ndarray] = {
     "the gyros are probably in deg/s": np.eye(3) * math.pi / 180,
+    "the gyros are probably in revolutions a minute": np.eye(3) * math.pi / 30,
+    "the gyros are probably in revolutions a second": np.eye(3) * math.pi * 2,
     "the gyros are probably in rad/s, and were taken for deg/s": np.eye(3) * 180 / math.pi,
     "the gyros probably turn the other way about every axis": -np.eye(3),
     **{

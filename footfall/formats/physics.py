@@ -14,6 +14,7 @@ from footfall.errors import InputError
 from footfall.formats.closure import misclosure, resting_force, rests_of, strides_of
 from footfall.formats.diagnosis import MISCLOSURE, Diagnosis
 from footfall.formats.samples import Samples
+from footfall.formats.units import UNITS
 from footfall.recording import Recording
 
 GRAVITY_TOLERANCE = 1.0  # m/s2, of the force at rest
@@ -27,7 +28,12 @@ _FORCES = (
     (1000.0, "they are probably in mg"),
     (0.0, "gravity was probably removed from them"),
     (32.17, "they are probably in ft/s2"),
+    *((float(1 << bits), "they are probably the sensor's raw counts") for bits in range(11, 15)),
 )
+_RATES = {"deg/s": 180 / math.pi, "mrad/s": 1e3, "mdeg/s": 180e3 / math.pi}
+BRIEF_S = 3.0  # no walk is so short
+USUAL_RMS = 3.0  # rad/s
+DEAD = 0.02  # of the liveliest axis' standard deviation: real walks' stillest axis has .24 and more
 
 
 def check_alive(recording: Recording) -> None:
@@ -57,10 +63,12 @@ def likely_units(samples: Samples, unstated: frozenset[str], walk: bool) -> tupl
     told: list[str] = []
     if "accel" in unstated and len(samples) > 10:
         force = resting_force(samples.t, samples.gyro, samples.accel)
-        for unit, size in (("g", GRAVITY), ("mg", GRAVITY / 1000)):
-            if abs(force * size - GRAVITY) <= GRAVITY_TOLERANCE:
-                samples = replace(samples, accel=samples.accel * size)
-                told.append(f"nothing states the accelerometers' unit: taken for {unit}")
+        sizes = {unit: UNITS["accel"][unit] for unit in ("g", "mg", "cm/s2", "mm/s2")}
+        unit, size = min(sizes.items(), key=lambda one: abs(force * one[1] - GRAVITY))
+        # m/s2 is meant where it is possible.
+        if abs(force * size - GRAVITY) <= GRAVITY_TOLERANCE < abs(force - GRAVITY):
+            samples = replace(samples, accel=samples.accel * size)
+            told.append(f"nothing states the accelerometers' unit: taken for {unit}")
     if "gyro" in unstated and walk and len(samples) > 10:
         recording = Recording(t=samples.t, gyro=samples.gyro, accel=samples.accel)
         strides = strides_of(recording, rests_of(recording))
@@ -88,9 +96,10 @@ def check_values(recording: Recording, clipped: Mapping[str, int]) -> None:
                 f"{name} is at the end of its range in {count} of {len(recording.t)} samples", "recording"
             )
     interval = recording.interval
-    if not 1e-5 <= interval <= 1.0:
-        units = {1e-3: "ms", 1e-6: "us", 1e-9: "ns"}
-        cause = next((unit for size, unit in units.items() if 1e-4 <= interval * size <= 0.1), None)
+    brief = recording.t[-1] - recording.t[0] < BRIEF_S and len(recording.t) > 1000 and interval < 2e-4
+    if brief or not 1e-5 <= interval <= 1.0:
+        units = {1e-3: "ms", 1e-6: "us", 1e-9: "ns", 60.0: "minutes", 3600.0: "hours", 86400.0: "days"}
+        cause = next((unit for size, unit in units.items() if 5e-4 <= interval * size <= 0.1), None)
         guess = f": t is probably in {cause}" if cause else ""
         raise InputError(f"samples are {interval:.3g} s apart, expected 0.00001 to 1 s{guess}", "recording")
 
@@ -131,11 +140,19 @@ def check_walk(recording: Recording) -> bool:
     if spread < FORCE_SPREAD:
         return False  # dead reckoning will say so
     if not GYRO_RMS[0] <= rms <= GYRO_RMS[1]:
-        cause = "deg/s" if rms > GYRO_RMS[1] else "rad/s, and were taken for deg/s"
+        likely = min(_RATES, key=lambda unit: abs(math.log(rms / _RATES[unit] / USUAL_RMS)) if rms else 0.0)
+        cause = likely if rms > GYRO_RMS[1] else "rad/s, and were taken for deg/s"
         raise InputError(
             f"the gyros turn at {rms:.3g} rad/s RMS while the foot walks: they are probably in {cause}",
             "recording",
         )
+    for names, values in ((GYRO, recording.gyro), (ACCEL, recording.accel)):
+        lively = values.std(axis=0) / values.std(axis=0).max()
+        if lively.min() < DEAD:
+            name = names[int(lively.argmin())]
+            raise InputError(
+                f"{name} hardly says anything while the others do: it is probably dead", "recording"
+            )
     return True
 
 

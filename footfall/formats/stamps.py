@@ -146,6 +146,7 @@ class Clock:
         self._added = 0.0
         self._step = 0.0
 
+    @np.errstate(invalid="ignore")  # stamps may be infinite
     def __call__(self, t: np.ndarray) -> np.ndarray:
         """Stamps (n,) of the next block, in any unit."""
         before = np.array([] if self._last is None else [self._last])

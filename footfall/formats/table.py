@@ -30,6 +30,7 @@ pa, pq = late("pyarrow"), late("pyarrow.parquet")
 BLOCK_ROWS = 1 << 16
 PAGE_BYTES = 1 << 18
 MOST_SENSORS = 20
+LONG_HEAD_BYTES = 1 << 22
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,7 @@ class Opened:
     dialect : of a text; None of Parquet
     file : Arrow's, of Parquet
     rows : cells of its first rows
+    head : first bytes of a text, down to these rows
     """
 
     content: Content
@@ -49,6 +51,7 @@ class Opened:
     dialect: Dialect | None = None
     file: Any = None
     rows: tuple[tuple[str, ...], ...] = ()
+    head: bytes = b""
 
 
 def open_header(content: Content, columns: Sequence[str]) -> Opened:
@@ -65,12 +68,17 @@ def open_header(content: Content, columns: Sequence[str]) -> Opened:
         file, names = _open_parquet(content)
         rows = _first_rows(file)
         return Opened(content, Header(_renamed(content.path, names, columns)), file=file, rows=rows)
-    dialect = find_dialect(content.head, whole=len(content.head) < HEAD_BYTES)
+    head = content.head
+    dialect = find_dialect(head, whole=len(head) < HEAD_BYTES)
+    if (dialect is None or not dialect.rows) and content.size > HEAD_BYTES:  # below a long preamble
+        with open(content.at, "rb") as file:
+            head = file.read(LONG_HEAD_BYTES)
+        dialect = find_dialect(head, whole=len(head) < LONG_HEAD_BYTES) or dialect
     if dialect is None:
         raise InputError("no table of numbers, text or binary, that any known format has", content.path)
     own = dialect.names or ("",) * dialect.width
     header = Header(_renamed(content.path, own, columns), dialect.units, dialect.preamble)
-    return Opened(content, header, dialect, rows=dialect.rows)
+    return Opened(content, header, dialect, rows=dialect.rows, head=head)
 
 
 def _renamed(path: Path, own: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:
@@ -117,7 +125,7 @@ def open_table(content: Content, name: str, reading: Reading) -> Source:
         rows = opened.file.metadata.num_rows
     else:
         assert opened.dialect is not None
-        rows = content.size // row_bytes(content.head, opened.dialect)
+        rows = content.size // row_bytes(opened.head, opened.dialect)
     return Source(content.path, layout.format, rows, iter(blocks), meta, notes, unstated)
 
 

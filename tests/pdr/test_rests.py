@@ -69,6 +69,26 @@ def test_two_rests_that_differ_are_weighed():
     assert 0 < np.degrees(found[2]) < 0.1 / 3
 
 
+@pytest.mark.parametrize(("change", "told"), [(0.0, False), (0.3, False), (2.0, True), (-2.0, True)])
+def test_a_bias_that_changes_between_rests_is_told(change, told):
+    recording = recorded(before=4.5, after=4.5)
+    gyro = recording.gyro.copy()
+    gyro[recording.t > 10] += np.radians([0.0, 0.0, change])
+    found = find_rest(Recording(recording.t, gyro, recording.accel), PARAMS).changed
+    assert bool(found) == told
+    if told:
+        assert np.degrees(found) == pytest.approx(abs(change), rel=0.05)
+
+
+def test_short_rests_may_differ_by_more():
+    """In half a second a foot sways by as much as a bias may be."""
+    recording = recorded(before=3.0, cut=2.4, after=4.5)
+    for change, told in ((1.2, False), (4.0, True)):
+        gyro = recording.gyro.copy()
+        gyro[recording.t > 8] += np.radians([0.0, 0.0, change])
+        assert bool(find_rest(Recording(recording.t, gyro, recording.accel), PARAMS).changed) == told
+
+
 def test_a_recording_without_rest_begins_at_its_first_stance():
     recording = recorded(before=3.0, cut=4.1)
     rest = find_rest(recording, PARAMS)
