@@ -163,3 +163,16 @@ def test_gyros_that_drift_from_rest_to_rest_are_warned_of(foot, tmp_path):
     told = " ".join(track(tmp_path / "a.csv").warnings)
     assert "bias changes by" in told
     assert "deg/s between rests" in told
+
+
+@pytest.mark.parametrize("column", [2, 4])
+def test_an_axis_that_is_stuck_for_a_fifth_of_a_second_is_lost(foot, tmp_path, column):
+    turning = np.linalg.norm(foot.gyro, axis=1) > 1.5
+    first = next(i for i in range(1000, 2000) if turning[i : i + 40].all())
+    rows = [line.split(",") for line in table(foot).splitlines()]
+    for row in rows[first + 1 : first + 41]:
+        row[column] = rows[first + 1][column]
+    (tmp_path / "a.csv").write_text("\n".join(",".join(row) for row in rows))
+    _, findings = read(tmp_path / "a.csv")
+    name = {2: "gyro_y", 4: "accel_x"}[column]
+    assert f"{name} stays as it is for 39 rows while the foot moves" in " ".join(findings.sentences())

@@ -52,6 +52,20 @@ def test_a_short_rest_is_enough_to_be_level(still):
     assert len(navigated(recording)) == 9
 
 
+def test_people_lean_before_they_step():
+    """The tenth of a second before the first movement is no rest."""
+    recording = recorded(before=3.0, cut=3.0 - 0.45)
+    moved = np.flatnonzero(np.linalg.norm(recording.gyro - BIAS, axis=1) > np.radians(4))[0]
+    assert recording.t[find_rest(recording, PARAMS).last] < recording.t[moved] - 0.1
+
+
+@pytest.mark.parametrize(("turn", "rests"), [(20.0, 1), (40.0, 0)])
+def test_a_turntable_is_no_rest(turn, rests):
+    t = np.arange(1000) / RATE
+    gyro = np.tile(np.radians([0.0, 0.0, turn]), (len(t), 1))
+    assert len(still_stretches(Recording(t, gyro, np.tile([0.0, 0.0, GRAVITY], (len(t), 1))))) == rests
+
+
 def test_a_later_rest_counts_by_its_square():
     """Half a second at the start knows the bias badly, eight at the end well: these decide."""
     recording = recorded(before=3.0, cut=2.2, after=8.0)
