@@ -287,7 +287,7 @@ LAYOUTS: Mapping[str, Callable[[Header], list[Layout]]] = {
     # Of iPhones, as they have it.
     "sensorlog": _named(
         "sensorlog",
-        ["motionRotationRateX", "accelerometerAccelerationX"],
+        ["(?:motionRotationRate|gyroRotation)X", "accelerometerAccelerationX"],
         {"gyro": 1.0, "accel": GRAVITY},
         mirrored=True,
     ),

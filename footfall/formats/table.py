@@ -108,7 +108,7 @@ def open_table(content: Content, name: str, reading: Reading) -> Source:
     found = find_layouts(content.path, opened.header, name)
     if not found:
         raise not_understood(content.path, opened.header, opened.rows, name)
-    layout = chosen(content.path, found, reading.sensor)
+    layout = _with_a_clock(chosen(content.path, found, reading.sensor), opened)
     rate_hz = reading.rate_hz or layout.rate_hz
     if "t" not in layout.columns and rate_hz is None:
         raise InputError("no column of time, and no rate (Hz) was given instead (--rate)", content.path)
@@ -127,6 +127,17 @@ def open_table(content: Content, name: str, reading: Reading) -> Source:
         assert opened.dialect is not None
         rows = content.size // row_bytes(opened.head, opened.dialect)
     return Source(content.path, layout.format, rows, iter(blocks), meta, notes, unstated)
+
+
+def _with_a_clock(layout: Layout, opened: Opened) -> Layout:
+    """Without a column of time that is empty, where the rate stands above the table."""
+    name = layout.columns.get("t")
+    if name is None or not opened.rows or layout.rate_hz is None:
+        return layout
+    place = list(opened.header.names).index(name)
+    if any(row[place] for row in opened.rows if place < len(row)):
+        return layout
+    return replace(layout, columns={k: v for k, v in layout.columns.items() if k != "t"}, finer="")
 
 
 def chosen(path: Path, found: Sequence[Layout], sensor: str | None) -> Layout:

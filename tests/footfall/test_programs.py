@@ -124,6 +124,49 @@ def sensorlog(foot):
     )
 
 
+def sensorlog_raw(foot):
+    """With the gyros themselves, and a clock for each sensor."""
+    names = ["loggingTime(txt)", "loggingSample(N)", "accelerometerTimestamp_sinceReboot(s)"]
+    names += [f"accelerometerAcceleration{a}(G)" for a in "XYZ"] + ["gyroTimestamp_sinceReboot(s)"]
+    names += [f"gyroRotation{a}(rad/s)" for a in "XYZ"] + ["motionYaw(rad)", "label(N)"]
+
+    def cells(t, w, f):
+        clock = f"{t + 4321.25:.6f}"
+        first = [iso(t, " ")[:-3] + " +0100", str(round(200 * t)), clock]
+        return [*first, *numbers(-f / GRAVITY), clock, *numbers(w), "0.1", "0"]
+
+    return lines(foot, cells, [",".join(names)])
+
+
+def shimmer_quoted(foot):
+    """Consensys with commas: its first line stands in quotes."""
+    names = ["Timestamp_Unix_CAL", *(f"Accel_WR_{a}_CAL" for a in "XYZ"), *(f"Gyro_{a}_CAL" for a in "XYZ")]
+    head = [
+        '"sep=,"',
+        ",".join(f"S_Foot_{name}" for name in names) + ",",
+        "ms,m/(s^2),m/(s^2),m/(s^2),deg/s,deg/s,deg/s,",
+    ]
+    return lines(foot, lambda t, w, f: [f"{1.7e12 + 1000 * t:.3f}", *numbers(f, w / DEG), ""], head)
+
+
+def xsens_without_clock(foot):
+    """MT Manager with columns of clocks that stay empty: the rate stands above."""
+    head = [
+        "// Start Time: Unknown",
+        "// Update Rate: 200.0Hz",
+        "// Filter Profile: human (46.1)",
+        "// Firmware Version: 4.0.2",
+        "PacketCounter\tSampleTimeFine\tYear\tMonth\tUTC_Nano\tUTC_Second\tUTC_Valid\tAcc_X\tAcc_Y\tAcc_Z"
+        "\tGyr_X\tGyr_Y\tGyr_Z\tMag_X\tMag_Y\tMag_Z\tMat[1][1]\tMat[2][1]",
+    ]
+    return lines(
+        foot,
+        lambda t, w, f: [f"{3583 + round(200 * t):05d}", *[""] * 6, *numbers(f, w), *["0.5"] * 5],
+        head,
+        "\t",
+    )
+
+
 def shimmer(foot):
     """Consensys: sep=, names, units, tabs; wide range beside low noise, which ends at 2 g."""
     names = ["Timestamp_Unix_CAL", *(f"Accel_WR_{a}_CAL" for a in "XYZ")]
@@ -264,6 +307,9 @@ PROGRAMS = {
     "WitMotion, stamps without zeros": witmotion_unpadded,
     "WitMotion, two clocks": witmotion_chip,
     "SensorLog": sensorlog,
+    "SensorLog, raw": sensorlog_raw,
+    "Shimmer, quoted": shimmer_quoted,
+    "Xsens without a clock": xsens_without_clock,
     "Shimmer Consensys": shimmer,
     "Physics Toolbox": physics_toolbox,
     "Physics Toolbox, decimal commas": physics_toolbox_clock,
@@ -276,6 +322,9 @@ PROGRAMS = {
 }
 NAMED = {
     "SensorLog": "sensorlog",
+    "SensorLog, raw": "sensorlog",
+    "Shimmer, quoted": "shimmer",
+    "Xsens without a clock": "xsens",
     "Shimmer Consensys": "shimmer",
     "EuRoC": "euroc",
     "Xsens MT Manager": "xsens",
