@@ -34,6 +34,7 @@ from footfall.scenarios.trial import Trial, recording_of, setup, walk_of
 from footfall.streams import stream
 
 STUDIES = ("paces", "mounts")
+FEET = tuple(name for name, mount in MOUNTS.items() if mount.segment == "foot")  # shanks: `shank`
 CUT_S = 60.0
 NEAR_S = 0.1
 SHORT_M, SHORT_SEED, PACES = 120.0, 901, (0.7, 1.0, 1.3, 1.7)
@@ -65,7 +66,7 @@ def trials() -> Iterator[tuple[str, Trial]]:
                 seen.add(task.walk)
                 yield name, next(iter(task.trials()))[0][0]
     short = load_scenario("straight").changed("path", elements=[{"kind": "straight", "length_m": SHORT_M}])
-    for mount, pace in product(MOUNTS, PACES):
+    for mount, pace in product(FEET, PACES):
         worn = short.changed("sensor", mount=mount, imu="consumer").changed("gait", pace_m_s=pace)
         yield "short", Trial(setup(worn, methods=["pdr"]), 0, SHORT_SEED, SHORT_SEED, SHORT_SEED)
 
