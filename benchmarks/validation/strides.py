@@ -102,10 +102,10 @@ def stances_of(recording: Recording, detector: str) -> np.ndarray:
     return recording.t[found.stances.resets[found.stances.footfalls]]
 
 
-def go(job: tuple[str, Trial, str, int]) -> list[Counted]:
-    """A walk whole and in cuts."""
-    study, trial, detector, cuts = job
-    walk = walk_of(trial)
+def go(job: tuple[str, Trial, str, int, Sequence[Trial]]) -> list[Counted]:
+    """A walk whole and in cuts; the last of a job are the trials on the same steps."""
+    study, trial, detector, cuts, alike = job
+    walk = walk_of(trial, also=alike)
     whole = recording_of(trial, walk)
     rng = stream(trial.walk_seed, "where a recording begins")
     begins = rng.uniform(walk.calibration_s + 5.0, walk.t[-1] - CUT_S - 5.0, size=cuts)
@@ -157,7 +157,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--cuts", type=int, default=20, help="minutes cut out of each walk (default 20)")
     parser.add_argument("--page", type=Path, metavar="MD", help="put the table into this page's mark")
     chosen = parser.parse_args(arguments)
-    jobs = [(name, trial, chosen.detector, chosen.cuts) for name, trial in trials()]
+    every = [(name, trial, trial.plan.steps) for name, trial in trials()]
+    alike: dict[str, list[Trial]] = {}
+    for _, trial, steps in every:
+        alike.setdefault(steps, []).append(trial)
+    jobs = [(name, trial, chosen.detector, chosen.cuts, alike[steps]) for name, trial, steps in every]
     found = [one for counted in run_all(go, jobs, chosen.processes, "walks") for one in counted]
     made = sheet(found)
     made.show()
