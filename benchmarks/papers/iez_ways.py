@@ -4,7 +4,7 @@ Each way is run stance by stance on stock scenarios in a perfect IMU, unaligned 
 largest distance from the truth, worst of the walks), and on the real recordings beside the checkout (sum of
 their errors). Then the velocity that the simulated foot has at the instant of zero velocity, by slope.
 
-python -m benchmarks.papers.iez_ways
+python -m benchmarks.papers.iez_ways --page docs/iez.md
 """
 
 from __future__ import annotations
@@ -12,11 +12,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from benchmarks._common import options, run_all, write_json
-from benchmarks._page import Sheet
+from benchmarks._page import Sheet, by_name, fill
 from benchmarks.validation._real import BESIDE, Real, find
 from benchmarks.validation.perfect_imu import Own, own, without_bias
 from benchmarks.validation.real_recordings import DETECTOR, judge, reckoning
@@ -30,7 +31,6 @@ from footfall.pdr.track import Track
 from footfall.scenarios.judge.score import compare
 from footfall.scenarios.trial import Trial, recording_of, setup, walk_of
 from footfall.scenarios.trial import reckoning as simulated
-from footfall.simulate.walk import Walk
 
 SCENARIOS = ("straight", "curving", "errands", "closed-loop")
 STEEP = 0.035  # rise over run from which on a stride belongs to the slope of 5 %
@@ -118,12 +118,14 @@ class Slid:
     down: float
 
 
-def slid(found: Track, truth: Walk) -> Slid:
-    """From what dead reckoning's strides lack: with a perfect IMU that is this velocity, stride by stride."""
-    row = compare(found, truth)
-    step = np.diff(row.truth, axis=0)
+def slid(found: Track, place: np.ndarray) -> Slid:
+    """From what dead reckoning's strides lack: with a perfect IMU that is this velocity, stride by stride.
+
+    place : (n, 2) m, true, at the footfalls
+    """
+    step = np.diff(place, axis=0)
     length = np.hypot(*step.T)
-    lacking = -np.diff(row.estimate - row.truth, axis=0) / np.diff(found.t)[:, None]
+    lacking = -np.diff(found.position[:, :2] - place, axis=0) / np.diff(found.t)[:, None]
     along = np.einsum("ij,ij->i", lacking, step) / np.maximum(length, 1e-9)
     slope = np.diff(found.position[:, 2]) / np.maximum(length, 1e-9)
     whole = length > WHOLE_STRIDE
@@ -140,7 +142,8 @@ def on_walk(trial: Trial) -> tuple[dict[str, Own], Slid]:
     given = simulated(trial.setup, walk, recording_of(trial, walk))
     name, number = trial.setup.scenario.name, trial.number + 1
     found = {way: own(name, number, way, track(given, how), walk) for way, how in WAYS.items()}
-    return found, slid(pdr_track(given.footfalls), walk)
+    reckoned = pdr_track(given.footfalls)
+    return found, slid(reckoned, compare(reckoned, walk).truth)
 
 
 def on_feet(real: Real) -> dict[str, float]:
@@ -158,6 +161,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--walks", type=int, default=2, help="of each scenario (default 2)")
     parser.add_argument("--first", type=int, default=0, help="number of the first of them (default 0)")
     parser.add_argument("--no-real", action="store_true", help="leave real recordings out")
+    parser.add_argument("--page", type=Path, metavar="MD", help="fill its tables")
     chosen = parser.parse_args(arguments)
     setups = [setup(without_bias(name), imu="perfect", methods=()) for name in chosen.scenarios]
     numbers = range(chosen.first, chosen.first + chosen.walks)
@@ -167,7 +171,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     feet = run_all(on_feet, reals, chosen.processes, "real feet")
 
     ways = Sheet("ways", "Heading deg / position %, worst of the walks; sum of real errors, m", ["way"])
-    ways.headings += [*chosen.scenarios, *(["real"] if feet else [])]
+    ways.headings += [*(f"`{name}`" for name in chosen.scenarios), *(["real"] if feet else [])]
     for name in WAYS:
         row = [name]
         for scenario in chosen.scenarios:
@@ -176,13 +180,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
             row.append(f"{heading:.2f} / {max(one.largest_position_pct for one in worst):.3f}")
         ways.rows.append(row + ([f"{sum(one[name] for one in feet):.2f}"] if feet else []))
     ways.show()
-    slides = Sheet("slides", "Velocity along the stride when it is called zero, mm/s", ["walk"])
+    slides = Sheet("slides", "Velocity along the stride when it is called zero", ["mm/s"])
     slides.headings += ["level", "5 % up", "5 % down"]
     for found, slide in walked:
         one = next(iter(found.values()))
         cells = (f"{1e3 * value:+.1f}" if value == value else "-" for value in vars(slide).values())
-        slides.rows.append([f"{one.scenario} {one.walk}", *cells])
+        slides.rows.append([f"`{one.scenario}`, walk {one.walk}", *cells])
     slides.show()
+    if chosen.page is not None:
+        fill(chosen.page, by_name([ways, slides]))
     document = {sheet.name: {"head": sheet.headings, "rows": sheet.rows} for sheet in (ways, slides)}
     write_json(chosen.json, document)
 
