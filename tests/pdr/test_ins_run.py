@@ -95,6 +95,23 @@ def test_the_walking_vertical_is_the_mean_of_ten_strides(bend):
         assert np.abs(vertical - mean_vertical(truth, 10.0, 20.0)).max() > 0.1  # at rest
 
 
+@pytest.mark.parametrize("strides", [1, 10])
+def test_the_walking_vertical_knows_so_many_strides_and_no_more(bend, strides):
+    recording = bend.recording()
+    found = detect(recording, PdrParams())
+    at = found.stances.resets[found.stances.footfalls]
+    known = {} if strides == 10 else {"strides": strides}  # ten, where nobody says another number
+
+    def turned_at(row):
+        gyro = recording.gyro.copy()
+        gyro[row] += 20.0
+        return walking_vertical(replace(recording, gyro=gyro), found, 0.2, **known)
+
+    vertical = walking_vertical(recording, found, 0.2, **known)
+    assert np.abs(turned_at(at[strides] - 100) - vertical).max() > 1e-3
+    np.testing.assert_array_equal(turned_at(at[strides] + 1), vertical)
+
+
 def test_zero_velocity_leaves_the_gyro_bias_about_the_walking_vertical_alone(bend):
     """Whatever the foot's attitude was at each update: corrections that are level each are not so in sum."""
     recording = bend.recording(gyro_error=drift(bend, [0.2, -0.3, 0.1]))
