@@ -35,6 +35,7 @@ from footfall.scenarios.trial import reckoning as simulated
 SCENARIOS = ("straight", "curving", "errands", "closed-loop")
 STEEP = 0.035  # rise over run from which on a stride belongs to the slope of 5 %
 WHOLE_STRIDE = 0.6  # m
+FEW = 30  # strides; of fewer no mean is given
 
 
 @dataclass(frozen=True)
@@ -131,7 +132,8 @@ def slid(found: Track, place: np.ndarray) -> Slid:
     whole = length > WHOLE_STRIDE
 
     def mean(rows: np.ndarray) -> float:
-        return float(along[whole & rows].mean()) if (whole & rows).any() else math.nan
+        chosen = along[whole & rows]
+        return float(chosen.mean()) if len(chosen) >= FEW else math.nan
 
     return Slid(mean(np.abs(slope) < STEEP / 2), mean(slope > STEEP), mean(slope < -STEEP))
 
