@@ -131,7 +131,7 @@ def test_ways_beside_the_default_are_the_default_but_for_what_they_change(feet):
 
 def test_a_foot_that_slides_is_seen_to_slide():
     """What zero velocity overlooks is what the strides lack: here 20 mm/s forward, all along the walk."""
-    truth = walk(np.zeros(12), rocking=0.0)
+    truth = walk(np.zeros(42), rocking=0.0)
     found = pdr_track(dead_reckon(truth.recording()))
     place = truth.position[truth.at(found.t)][:, :2]
     moved = place + 0.02 * found.t[:, None] * [1.0, 0.0]
