@@ -9,11 +9,12 @@ python -m benchmarks.speed.startup
 from __future__ import annotations
 
 import argparse
-import resource
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from benchmarks._usage import children_cpu_s
 
 SCENARIO = """
 description = "thirty metres"
@@ -49,10 +50,9 @@ COMMANDS = (
 
 def processor_time(arguments: list[str], folder: Path) -> float:
     """User and system time (s) of a Python process and its children."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    before = children_cpu_s()
     subprocess.run([sys.executable, *arguments], cwd=folder, check=True, capture_output=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    return children_cpu_s() - before
 
 
 def main() -> None:
