@@ -45,6 +45,7 @@ _OTHERS = {
     b"\xff\xd8\xff": "a picture, expected a recording",
     b"\x7fELF": "a program, expected a recording",
     b"\x93NUMPY": "a NumPy array, expected columns with names: save it as CSV or Parquet",
+    b"ARROW1": "an Arrow or Feather file, expected CSV or Parquet: save it as Parquet",
     b"SQLite format 3": "a database; of a ROS 2 bag name the folder that it lies in",
     **{
         bytes([0x80, protocol]): "a Python pickle, which is never opened: it could run any code"

@@ -115,6 +115,8 @@ def check_gravity(recording: Recording) -> None:
     force = resting_force(recording.t, recording.gyro, recording.accel)
     if abs(force - GRAVITY) > GRAVITY_TOLERANCE:
         cause = next((f": {text}" for size, text in _FORCES if abs(force - size) <= 0.1 * max(size, 1)), "")
+        if abs(resting_force(recording.t, recording.accel, recording.gyro) - GRAVITY) <= GRAVITY_TOLERANCE:
+            cause = ": gyros and accelerometers are probably exchanged"
         raise InputError(
             f"the accelerometers measure {force:.3g} at rest, "
             f"expected {GRAVITY:.3g} +- {GRAVITY_TOLERANCE:g} m/s2{cause}",

@@ -203,8 +203,12 @@ class _Rows:
     def _stamped(self) -> bool:
         """Whether t is written as dates or clocks."""
         name = self.layout.columns.get("t")
-        if name is None or self.opened.dialect is None:
+        if name is None:
             return False
+        if self.opened.dialect is None:
+            schema, own = self.opened.file.schema_arrow, list(self.opened.header.names)
+            if not _is_text(schema.types[own.index(name)]):
+                return False
         place = list(self.opened.header.names).index(name)
         cells = [row[place] for row in self.opened.rows[:10] if row[place]]
         return any(map(is_stamp, cells))
@@ -286,6 +290,9 @@ def _open_parquet(content: Content) -> tuple[Any, list[str]]:
         # Page by page: left to itself Arrow reads ahead, and holds what it has read to the end.
         file = pq.ParquetFile(content.at, pre_buffer=False, buffer_size=PAGE_BYTES)
         names = [_flat(name) for name in file.schema_arrow.names]
+        if "__index_level_0__" in names:  # pandas' index without a name: a time, if it is one
+            place = names.index("__index_level_0__")
+            names[place] = "time" if pa.types.is_timestamp(file.schema_arrow.types[place]) else names[place]
     except (pa.ArrowException, OSError) as error:
         raise InputError(
             f"not a readable Parquet file ({str(error).splitlines()[0]})", content.path
@@ -321,6 +328,7 @@ def _parquet(opened: Opened, wanted: Sequence[str], texts: Sequence[str]) -> Ite
     for name in wanted:
         kind = file.schema_arrow.field(own[name]).type
         numeric = pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)
+        numeric = numeric or pa.types.is_decimal(kind) or pa.types.is_duration(kind)
         if not (numeric or name in texts or pa.types.is_timestamp(kind)):
             raise InputError(f"column {name!r} holds {kind}, expected numbers", path)
     try:
@@ -331,10 +339,16 @@ def _parquet(opened: Opened, wanted: Sequence[str], texts: Sequence[str]) -> Ite
         raise InputError(f"not a readable Parquet file ({str(error).splitlines()[0]})", path) from None
 
 
+def _is_text(kind: Any) -> bool:
+    return bool(pa.types.is_string(kind) or pa.types.is_large_string(kind))
+
+
 def _values(column: Any, text: bool) -> Any:
     if text:
         return column.to_pylist()
-    if pa.types.is_timestamp(column.type):
+    if pa.types.is_decimal(column.type):
+        return floats(column.cast(pa.float64()))
+    if pa.types.is_timestamp(column.type) or pa.types.is_duration(column.type):
         unit = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[column.type.unit]
         return floats(column.cast(pa.int64())) * unit
     return floats(column)

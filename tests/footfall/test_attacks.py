@@ -6,6 +6,8 @@ import warnings
 import zipfile
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from footfall.conventions import GRAVITY
@@ -176,3 +178,51 @@ def test_an_axis_that_is_stuck_for_a_fifth_of_a_second_is_lost(foot, tmp_path, c
     _, findings = read(tmp_path / "a.csv")
     name = {2: "gyro_y", 4: "accel_x"}[column]
     assert f"{name} stays as it is for 39 rows while the foot moves" in " ".join(findings.sentences())
+
+
+def held(foot, **changed):
+    values = dict(zip(NAMES, [foot.t, *foot.gyro.T, *foot.accel.T], strict=True))
+    return values | changed
+
+
+TYPES = {
+    "text": lambda t: pa.array([f"2024-05-01T12:00:{s:09.6f}" for s in t]),
+    "durations": lambda t: pa.array(np.round(1e9 * t).astype(np.int64), pa.duration("ns")),
+    "milliseconds": lambda t: pa.array(np.round(1e3 * t).astype(np.int64), pa.timestamp("ms", "UTC")),
+    "decimals": lambda t: pa.array([f"{s:.4f}" for s in t]).cast(pa.decimal128(12, 4)),
+}
+
+
+@pytest.mark.parametrize("kind", TYPES)
+def test_stamps_of_any_type_in_parquet(foot, tmp_path, kind):
+    pq.write_table(pa.table(held(foot, t=TYPES[kind](foot.t))), tmp_path / "a.parquet")
+    same(tmp_path / "a.parquet", foot)
+
+
+def test_the_index_of_a_data_frame_is_its_time(foot, tmp_path):
+    pd = pytest.importorskip("pandas")
+    values = held(foot)
+    index = pd.to_datetime(values.pop("t"), unit="s")
+    pd.DataFrame(values).set_index(index).to_parquet(tmp_path / "a.parquet")
+    same(tmp_path / "a.parquet", foot)
+
+
+def test_gyros_in_the_place_of_accelerometers_are_told(foot, tmp_path):
+    (tmp_path / "a.csv").write_text(table(foot, (*NAMES[:1], *NAMES[4:], *NAMES[1:4])))
+    with pytest.raises(InputError, match="gyros and accelerometers are probably exchanged"):
+        read(tmp_path / "a.csv")
+
+
+def test_a_feather_is_told_as_one(tmp_path):
+    (tmp_path / "a.feather").write_bytes(b"ARROW1\x00\x00" + bytes(100))
+    with pytest.raises(InputError, match="an Arrow or Feather file, expected CSV or Parquet"):
+        read(tmp_path / "a.feather")
+
+
+def test_hdf5_that_lies_across(foot, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        group = file.create_group("Sensors/1")
+        group["Time"] = (1e6 * foot.t).round().astype(np.uint64)
+        group["Accelerometer"], group["Gyroscope"] = foot.accel.T, foot.gyro.T
+    same(tmp_path / "a.h5", foot)
