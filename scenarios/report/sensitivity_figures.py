@@ -15,6 +15,7 @@ from footfall.scenarios.report.style import (
     MORE,
     colours_of,
     entitle,
+    head,
     label_edges,
     label_of,
     new_figure,
@@ -67,14 +68,10 @@ def draw_indices(found: Found, path: Path) -> None:
     ends = [axis.get_xlim() for axis in bars]
     for axis in bars:  # so that methods can be compared
         axis.set_xlim(min(low for low, _ in ends), max(high for _, high in ends))
-    bars[0].legend(loc="lower right", frameon=False, fontsize=8)
     for place, (axis, one) in enumerate(zip(ways, found.answers, strict=bool(ways))):
         _converge(axis, one, order, found)
         axis.set_ylabel("total index" if place % columns == 0 else "")
-    if ways:
-        handles, labels = ways[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower right", ncols=3, frameon=False, fontsize=7)
-    figure.suptitle(_title(found), x=0.01, ha="left", fontsize=10)
+    head(figure, _title(found), [*bars, *ways])
     save(figure, path)
 
 
@@ -134,12 +131,9 @@ def draw_effects(found: Found, path: Path) -> None:
     axes[0].set_yscale("log")
     plain_log(axes[0].yaxis)
     label_edges(axes, "", f"error ({unit_of(found.study.file.metric)})")
-    if not single:
-        handles, labels = axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower right", ncols=6, frameon=False, fontsize=8)
     what = "Median and 10th to 90th percentile" if single else "Median"
     title = f"{_title(found)}\n{what} over all other parameters; dotted: with none of them changed"
-    figure.suptitle(title, x=0.01, ha="left", fontsize=9)
+    head(figure, title, [] if single else axes)
     save(figure, path)
 
 
