@@ -298,16 +298,18 @@ def _interrupt_held() -> Iterator[None]:
     """Ctrl-C is answered at the end: a process that is half started would tell of the pipe that broke.
 
     It is held back by a mask, which what is started here inherits, and by a handler: the mask is this
-    thread's alone, and the signal goes to any thread of the process.
+    thread's alone, and the signal goes to any thread of the process. Windows has no masks.
     """
+    masks = hasattr(signal, "pthread_sigmask")
     main = threading.current_thread() is threading.main_thread()
     held: list[int] = []
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT}) if masks else ()
     before = signal.signal(signal.SIGINT, lambda number, frame: held.append(number)) if main else None
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        if masks:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         if before is not None:
             signal.signal(signal.SIGINT, before)
         if held:

@@ -1,4 +1,5 @@
-"""A stranger's tour, timed: list, run, walk, record, track, render, and a method of three lines evaluated.
+"""A stranger's tour, timed: list, run, walk, record, track, render, a recording that comes with the package
+navigated, and a method of three lines evaluated.
 
 Everything is as after an installation: no walk is in the cache and no kernel is compiled. Each step is a
 process of its own; what it took by the clock and of the processors is told, beside five minutes in all.
@@ -10,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import resource
 import subprocess
 import sys
 import tempfile
@@ -50,6 +50,9 @@ STEPS = (
     "footfall track rec.parquet --method hdr -o hdr.parquet",
     "footfall score hdr.parquet walk.parquet",
     f"footfall render {SCENARIO} -o walker.webp",
+    "footfall sample",
+    "footfall track walk.csv -o track.parquet",
+    "footfall score track.parquet --footprints footprints.csv",
     "python method.py",
 )
 
@@ -68,10 +71,10 @@ def take(step: str, folder: Path, environment: dict[str, str]) -> Took:
     """Do a step in a folder, with its words kept."""
     program, *words = step.split()
     command = [sys.executable, *(("-m", "footfall") if program == "footfall" else ()), *words]
-    before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    before, begin = os.times(), time.perf_counter()
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
-    seconds, after = time.perf_counter() - begin, resource.getrusage(resource.RUSAGE_CHILDREN)
-    used = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    seconds, after = time.perf_counter() - begin, os.times()
+    used = after.children_user - before.children_user + after.children_system - before.children_system
     return Took(step, seconds, used, done.returncode, (done.stderr or done.stdout).strip())
 
 
