@@ -177,6 +177,13 @@ def alive(pid):
         return False
 
 
+def test_a_log_tells_how_a_sweep_ended(place, cli):
+    assert cli("--log my.log sweep small.toml --workers 1")[0] == 0
+    last, ended = (place / "my.log").read_text(encoding="utf-8").splitlines()[-2:]
+    assert re.search(r"INFO small: 100%, finished, (\d+) of \1 recordings", last), last
+    assert " INFO ended after " in ended
+
+
 def test_kill_9_at_any_moment_changes_no_bit_and_leaves_no_process(place, cli):
     rng = random.Random(5)
     for more in (0, 1, 2):
