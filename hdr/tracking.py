@@ -39,7 +39,7 @@ from footfall.pdr.stream import dead_reckon_blocks
 from footfall.pdr.track import Track
 from footfall.settings import changed, did_you_mean
 
-SIMULATED = ("hdr", "threshold")  # method and detector where nobody says others
+SIMULATED = ("hdr", "threshold")  # method and detector unless others are asked for
 REAL = ("iez", "patient")
 TOO_LONG = "hdr"  # iez needs all samples
 

@@ -1,4 +1,4 @@
-"""A method of anybody's on a scenario, scored in one line."""
+"""Any method on a scenario, scored in one line."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """How far a track is off the truth.
 
-Nothing is fitted: the track is compared as it is, in the world's coordinates. A track whose start nobody knew
+Nothing is fitted: the track is compared as it is, in the world's coordinates. A track of an unknown start
 can be aligned first, by an option that says how much is fitted. Errors are estimate - truth; positions and
 distances are horizontal.
 """

@@ -1,4 +1,4 @@
-"""The file of a sensitivity study: what is varied, of which methods' error, over which cases."""
+"""The file of a sensitivity study: what is varied, for the errors of which methods, over which cases."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def stock_studies() -> dict[str, Path]:
 
 
 def read_study(name_or_path: str, changes: Mapping[str, Any] | None = None) -> Study:
-    """A study that comes with Footfall by name, or anybody's by the path of its TOML file.
+    """A study that comes with Footfall by name, or your own by the path of its TOML file.
 
     Parameters
     ----------

@@ -71,7 +71,7 @@ class Study:
 
     @classmethod
     def read(cls, name_or_path: str | os.PathLike[str]) -> Study:
-        """A stock study by name, or anyone's by the path of its TOML file.
+        """A stock study by name, or your own by the path of its TOML file.
 
         Raises
         ------

@@ -70,7 +70,7 @@ def stock_tunings() -> dict[str, Path]:
 
 
 def read_tuning(name_or_path: str, changes: Mapping[str, Any] | None = None) -> Tuning:
-    """A tuning that comes with Footfall by name, or anybody's by the path of its TOML file.
+    """A tuning that comes with Footfall by name, or your own by the path of its TOML file.
 
     Parameters
     ----------
