@@ -57,7 +57,7 @@ class Shown:
 
 
 def to_pandas(shown: Any) -> Any:
-    """A pandas DataFrame of a recording, a track, a walk or rows of scores.
+    """A pandas DataFrame of a recording, a track, a walk, a score, rows of scores or a study's results.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def to_pandas(shown: Any) -> Any:
 
 
 def plot(shown: Any) -> Any:
-    """Draw a recording, a track, a walk or rows of scores in a new figure of pyplot, in Footfall's style.
+    """Draw a recording, a track, a walk, scores or a study's results in a new figure, in Footfall's style.
 
     Parameters
     ----------

@@ -153,7 +153,7 @@ def _report(study: Study, folder: Path, command: str, seconds: float, *, as_json
     """Say what came of it, and refuse what came to nothing."""
     from footfall.scenarios.studies.describe import duration, failures
 
-    rows = study.results(folder)
+    rows = study.results(folder).table
     reasons = failures(rows)
     lost = sum(count for count, _ in reasons)
     if as_json:

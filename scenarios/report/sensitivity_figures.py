@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from footfall.scenarios.judge.gate import unit_of
+from footfall.scenarios.judge.score import unit_of
 from footfall.scenarios.report.sensitivity import asked, ranked
 from footfall.scenarios.report.style import (
     MORE,
@@ -20,6 +20,7 @@ from footfall.scenarios.report.style import (
     label_of,
     new_figure,
     new_panels,
+    plain_log,
     save,
 )
 from footfall.scenarios.studies.factors import Factor
@@ -27,7 +28,6 @@ from footfall.scenarios.studies.sensitivity import Answer, Found
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
 
 FIRST, TOTAL = "#1f6fb4", "#a9cbe6"
 _WHISKER: Any = {"color": "#222222", "elinewidth": 1.0, "capsize": 2.5, "fmt": "none"}
@@ -162,15 +162,6 @@ def _effect(
 def short(value: float) -> str:
     """Two digits, without an exponent where that is not shorter."""
     return f"{float(f'{value:.2g}'):g}"
-
-
-def plain_log(axis: Axis) -> None:
-    """Plain numbers at 1, 2 and 5 of each decade of an x or y axis that is logarithmic."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(NullFormatter())
 
 
 def _wrapped(factor: Factor, width: int = _WIDE, *, unit: bool = False) -> str:

@@ -14,6 +14,7 @@ from footfall.tables import replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 TRUTH = "#222222"
@@ -118,6 +119,15 @@ def save(figure: Figure, path: Path) -> None:
     """Write as PNG."""
     with replacing(path) as temporary:
         figure.savefig(temporary, format="png", dpi=160)
+
+
+def plain_log(axis: Axis) -> None:
+    """Plain numbers at 1, 2 and 5 of each decade of an x or y axis that is logarithmic."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def colours_of(methods: Sequence[str]) -> dict[str, str]:
