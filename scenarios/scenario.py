@@ -284,6 +284,11 @@ def stock_scenarios() -> tuple[str, ...]:
 def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
     """A stock scenario by name, or your own by the path of its TOML file.
 
+    Returns
+    -------
+    Scenario
+        Path, people, gait, temperatures, sensor and seeds; `plan(number)` is what a walk needs.
+
     Raises
     ------
     InputError

@@ -139,6 +139,11 @@ def compare(track: Track, walk: Poses, align: Align = "none") -> Comparison:
         "yaw": the position of row 0 becomes the truth's and the turn is that of least squares over all rows;
         "rigid": shift and turn of least squares over all rows (evo: `align`; Umeyama 1991, without scale)
 
+    Returns
+    -------
+    Comparison
+        One row a row of the track: times, both positions (m), the true heading and its error (rad).
+
     Raises
     ------
     InputError
@@ -178,6 +183,11 @@ def score(track: Track, walk: Walk, align: Align = "none") -> Score:
     Parameters
     ----------
     align : as of `compare`
+
+    Returns
+    -------
+    Score
+        Six figures: heading (deg), return and distance error (%), position (m).
 
     Raises
     ------
