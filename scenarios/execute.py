@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 import tempfile
 import threading
 from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
@@ -317,22 +318,32 @@ def _interrupt_held() -> Iterator[None]:
     """Ctrl-C is answered at the end: a process that is half started would tell of the pipe that broke.
 
     It is held back by a mask, which what is started here inherits, and by a handler: the mask is this
-    thread's alone, and the signal goes to any thread of the process. Windows has no masks.
+    thread's alone, and the signal goes to any thread of the process.
     """
-    masks = hasattr(signal, "pthread_sigmask")
     main = threading.current_thread() is threading.main_thread()
     held: list[int] = []
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT}) if masks else ()
     before = signal.signal(signal.SIGINT, lambda number, frame: held.append(number)) if main else None
     try:
-        yield
+        with _interrupt_masked():
+            yield
     finally:
-        if masks:
-            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         if before is not None:
             signal.signal(signal.SIGINT, before)
         if held:
             signal.raise_signal(signal.SIGINT)
+
+
+@contextmanager
+def _interrupt_masked() -> Iterator[None]:
+    """SIGINT waits where threads have masks."""
+    if sys.platform == "win32":
+        yield
+        return
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
 @contextmanager

@@ -21,6 +21,7 @@ from typing import NamedTuple
 from rich.table import Table
 
 from benchmarks._common import options, out, write_json
+from benchmarks._usage import children_cpu_s
 
 TARGET_S = 300.0
 SCENARIO = "block"
@@ -71,10 +72,9 @@ def take(step: str, folder: Path, environment: dict[str, str]) -> Took:
     """Do a step in a folder, with its words kept."""
     program, *words = step.split()
     command = [sys.executable, *(("-m", "footfall") if program == "footfall" else ()), *words]
-    before, begin = os.times(), time.perf_counter()
+    before, begin = children_cpu_s(), time.perf_counter()
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
-    seconds, after = time.perf_counter() - begin, os.times()
-    used = after.children_user - before.children_user + after.children_system - before.children_system
+    seconds, used = time.perf_counter() - begin, children_cpu_s() - before
     return Took(step, seconds, used, done.returncode, (done.stderr or done.stdout).strip())
 
 

@@ -48,6 +48,7 @@ OTHERS = {
     "dask",
     "kubectl",
     "c++",
+    "uv",
 }
 # They run here: what they need is made by others before them, and takes no walk.
 RUN = {"list", "parameters", "sample", "inspect", "record", "track", "score", "export"}
