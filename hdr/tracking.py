@@ -175,7 +175,7 @@ def track(
         likely, found = _judged(found, given, findings)
     except InputError as error:
         raise _with_losses(error.about(source.path, "recording"), locals().get("findings")) from None
-    warnings = () if simulated else tuple(warned(likely, findings))
+    warnings = () if simulated else tuple(warned(likely, findings, rest))
     if not simulated and likely.impossible():
         raise _with_losses(InputError(likely.impossible(), source.path), findings)
     return Tracked(found, findings, params.bias_s, likely, tuple(notes), warnings)
@@ -260,14 +260,21 @@ def _judged(track: Track, given: Reckoning, findings: Findings) -> tuple[Plausib
     )
 
 
-def warned(likely: Plausibility, findings: Findings) -> list[str]:
-    """What is beyond the usual of a track and its recording."""
+def warned(likely: Plausibility, findings: Findings, rest: Rest | None = None) -> list[str]:
+    """What is beyond the usual of a track, its recording, and its rests."""
     said = likely.warnings()
+    if rest is not None and rest.changed:
+        said.append(
+            f"the gyros' bias changes by {np.degrees(rest.changed):.2g} deg/s between rests: "
+            "headings are as uncertain"
+        )
     off = findings.misclosure_g
-    if off is not None and off > USUAL_MISCLOSURE:
+    if findings.cause:
+        said.append(f"turned by its gyros, gravity does not stay vertical: probably {findings.cause}")
+    elif off is not None and off > USUAL_MISCLOSURE:
         said.append(
             f"turned by its gyros, gravity stays vertical to {off:.2g} g only, usual are at most "
-            f"{USUAL_MISCLOSURE:g}: the rate or a unit may be wrong, or the accelerometers lag"
+            f"{USUAL_MISCLOSURE:g}: a unit or an axis may be wrong, samples spoilt, or the mount slips"
         )
     if likely.doubtful:
         said.append(f"{likely.doubtful} strides are doubtful: samples are lost in their swings")

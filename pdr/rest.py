@@ -29,6 +29,7 @@ class Rest:
     last : index of the last sample that was averaged
     bias_sd : rad/s, how well the bias is known; 0 where it was not asked for
     source : what the bias was taken from, in words
+    changed : rad/s, by which rests differ at most, beyond what sway explains; 0 where they agree
     """
 
     gyro_bias: np.ndarray
@@ -36,6 +37,7 @@ class Rest:
     last: int
     bias_sd: float = 0.0
     source: str = ""
+    changed: float = 0.0
 
 
 def static_bias(recording: Recording, bias_s: float) -> Rest:

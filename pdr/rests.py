@@ -7,7 +7,9 @@ gyro bias to `SWAY` / T, and several rests count by their squared durations.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -29,6 +31,7 @@ BIAS_S = 0.45  # at rest for so long the rate says the bias
 LATER_S = 1.5  # a later rest is shorter only where a foot is put down slowly
 SETTLING_S = 0.5  # s after a foot is put down, and before it is lifted, in which it is not at rest yet
 SWAY = math.radians(0.3)
+CHANGED, SWAYS = math.radians(0.5), 3.0  # rad/s, and standard errors of sway, by which rests may differ
 UNKNOWN_SD = math.radians(0.5)  # rad/s, of a bias that nothing tells
 STANCE_S = 0.1  # about a stance's quietest instant
 
@@ -77,7 +80,23 @@ def find_rest(recording: Recording, params: PdrParams) -> Rest:
         bias = np.average(rates, axis=0, weights=weight)
         sd = SWAY / math.sqrt(weight.sum())
     rest = begun or _first_stance(recording, bias, params)
-    return replace(rest, gyro_bias=bias, bias_sd=sd, source=_told(recording, known, later, stills))
+    return replace(
+        rest,
+        gyro_bias=bias,
+        bias_sd=sd,
+        source=_told(recording, known, later, stills),
+        changed=_changed(rates, durations),
+    )
+
+
+def _changed(rates: Sequence[np.ndarray], durations: Sequence[float]) -> float:
+    """The largest difference (rad/s) between two rests that is beyond `CHANGED` and what sway explains."""
+    most = 0.0
+    for (one, first), (other, second) in combinations(zip(rates, durations, strict=True), 2):
+        off = float(np.linalg.norm(one - other))
+        if off > CHANGED + SWAYS * SWAY * math.hypot(1 / first, 1 / second):
+            most = max(most, off)
+    return most
 
 
 def still_stretches(recording: Recording) -> list[Still]:

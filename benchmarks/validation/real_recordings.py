@@ -30,7 +30,6 @@ from benchmarks.validation._real import BESIDE, Real, find
 from footfall import __version__
 from footfall.errors import InputError
 from footfall.formats.condition import condition
-from footfall.formats.physics import CHANGES, misclosure, rests_of
 from footfall.formats.samples import Samples
 from footfall.hdr.methods import METHODS, Reckoning
 from footfall.hdr.tracking import REAL, RealReckoning
@@ -159,16 +158,6 @@ def sheets(reals: Sequence[Real], found: Sequence[Judged]) -> list[Sheet]:
     return [*made, strides]
 
 
-def mechanics(reals: Sequence[Real]) -> Sheet:
-    """The velocity that a stride leaves, as it is and with the gyros' units or axes changed."""
-    sheet = Sheet("mechanics", "Velocity left by a stride, g T", ["gyros", *(real.name for real in reals)])
-    changes = {"as they are": np.eye(3), **CHANGES}
-    for name, change in changes.items():
-        row = [misclosure(real.recording, rests_of(real.recording), change) for real in reals]
-        sheet.rows.append([name, *("-" if left is None else f"{left:.3f}" for left in row)])
-    return sheet
-
-
 @dataclass(frozen=True)
 class Drifted:
     """Medians over units, by method.
@@ -285,7 +274,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         raise SystemExit(f"{chosen.data}: no recordings here")
     found, tracks = measure(reals)
     drifted = with_drift(reals, chosen.units, chosen.imu) if chosen.units else []
-    made = [*sheets(reals, found), mechanics(reals), bias_times(reals), clipped_on_purpose(reals)]
+    made = [*sheets(reals, found), bias_times(reals), clipped_on_purpose(reals)]
     if drifted:
         made.append(drift_sheet(drifted, chosen.imu, chosen.units))
     for sheet in made:

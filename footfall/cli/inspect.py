@@ -53,6 +53,8 @@ def inspect(
     show(f"{recording}: {found.format}, {found.rows} rows, {found.rate_hz:.5g} Hz, {found.duration_s:.4g} s")
     rests = ", ".join(f"{first:.1f} to {last:.1f} s" for first, last in found.rests)
     show(f"at rest: {rests or 'nowhere for 1.5 s'}")
+    x, y, z = found.up
+    show(f"up at rest: x {x:+.2f}, y {y:+.2f}, z {z:+.2f}")
     if found.gyro_noise_rad_s is not None and found.accel_noise_m_s2 is not None:
         gyro = math.degrees(found.gyro_noise_rad_s)
         show(f"noise at rest: gyro {gyro:.2g} deg/s, accelerometer {found.accel_noise_m_s2:.2g} m/s2")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -83,7 +85,8 @@ def open_ulog(content: Content, reading: Reading) -> Source:
             "a log of PX4: reading it needs pyulog (pip install 'footfall[px4]')", path
         ) from None
     try:
-        log = ULog(str(content.at), ["sensor_combined"])
+        with redirect_stdout(StringIO()):  # it prints what it thinks of a damaged log
+            log = ULog(str(content.at), ["sensor_combined"])
         held = {f"{one.name} {one.multi_id}": one.data for one in log.data_list}
     except Exception as error:  # pyulog raises whatever a damaged log makes it stumble over
         raise InputError(f"not a readable ULog ({error})", path) from None

@@ -7,6 +7,8 @@ import numpy as np
 from footfall.runs import runs
 
 HELD_S = 0.003  # a clipped signal stays at its extreme at least so long, and three samples
+TOP, BELOW = 0.006, 0.018  # shares of the extreme: where a noisy sensor is held, and the band below
+HELD = (20, 3.0)  # samples in the top, and times as many as in the band below: smooth peaks have 1.4
 BEYOND = 1.6  # ranges: no peak is restored higher
 
 
@@ -30,8 +32,20 @@ def clipped_runs(channel: np.ndarray, interval: float, least: float) -> np.ndarr
     for extreme in (channel.min(), channel.max()):
         if abs(extreme) >= least:
             held = runs(channel == extreme)
-            found.append(held[held[:, 1] - held[:, 0] >= long])
+            held = held[held[:, 1] - held[:, 0] >= long]
+            found.append(held if len(held) else _nearly_held(channel, extreme, long))
     return np.concatenate(found)
+
+
+def _nearly_held(channel: np.ndarray, extreme: float, long: int) -> np.ndarray:
+    """Runs (k, 2) at the end of a range that was calibrated, filtered or given noise afterwards."""
+    share = channel / extreme
+    top = share >= 1 - TOP
+    below = np.count_nonzero((share >= 1 - BELOW) & ~top)
+    found = runs(top)
+    found = found[found[:, 1] - found[:, 0] >= long]
+    plenty = np.count_nonzero(top) >= max(HELD[0], HELD[1] * below)
+    return found if plenty and len(found) > 1 else np.empty((0, 2), dtype=int)
 
 
 def restored(channel: np.ndarray, clipped: np.ndarray) -> np.ndarray:

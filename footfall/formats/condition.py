@@ -10,6 +10,7 @@ import numpy as np
 from footfall.columns import ACCEL, GYRO
 from footfall.errors import InputError
 from footfall.formats.clipping import clipped_runs, restored
+from footfall.formats.diagnosis import told_lag
 from footfall.formats.holes import Hole, bridged
 from footfall.formats.losses import Lost, without_lost
 from footfall.formats.order import in_order
@@ -47,6 +48,8 @@ class Findings:
     clipped : channel -> samples held at its extreme; those of gyros were restored
     notes : what was wrong with the file itself
     misclosure_g : g, velocity that a stride leaves over its duration, median; None where it was not computed
+    lag_s : s by which the gyros were later than the accelerometers, put right; 0 where they were not
+    cause : what is probably wrong with a recording whose strides do not close; "" where nothing is known
     """
 
     format: str
@@ -65,6 +68,8 @@ class Findings:
     clipped: tuple[tuple[str, int], ...] = ()
     notes: tuple[str, ...] = ()
     misclosure_g: float | None = None
+    lag_s: float = 0.0
+    cause: str = ""
 
     def sentences(self) -> list[str]:
         """What a person should know; nothing for a clean recording."""
@@ -91,6 +96,8 @@ class Findings:
         for name, count in self.clipped:
             mended = ", which were restored" if name in GYRO else ""
             said.append(f"{name} is clipped in {count} samples{mended}")
+        if self.lag_s:
+            said.append(f"{told_lag(self.lag_s)}: put right")
         return said
 
     def lost_sentences(self) -> list[str]:
@@ -116,6 +123,7 @@ class Findings:
         return asdict(self) | {"clipped": dict(self.clipped)}
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what overflows is refused, or left out as impossible
 def condition(
     samples: Samples, format: str, *, whole: bool = True, gap_s: float = FILL_S, doubted: bool = True
 ) -> tuple[Samples, Findings]:

@@ -89,7 +89,11 @@ def find_dialect(head: bytes, whole: bool) -> Dialect | None:
     mark = mark if head[:mark] in (codecs.BOM_UTF8, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) else 0
     plain = "utf-8" if encoding == "utf-8-sig" else encoding
     lenient = "surrogateescape" if plain == "utf-8" else "replace"
-    lines = head[mark:].decode(plain, errors=lenient).split("\n")
+    text = head[mark:].decode(plain, errors=lenient)
+    if _is_binary(text):
+        return None
+    ending = "\n" if "\n" in text else "\r"  # of old Macs
+    lines = text.split(ending)
     if not whole and len(lines) > 1:
         lines = lines[:-1]
     lines = [line.rstrip("\r") for line in lines]
@@ -106,11 +110,11 @@ def find_dialect(head: bytes, whole: bool) -> Dialect | None:
     # Cell by cell: "1,5" is one number, for delimiters other than the comma only.
     commas = sum("," in row[j] for row in rows for j in numeric)
     points = sum("." in row[j] for row in rows for j in numeric)
-    raw = head[mark:].split("\n".encode(plain))
-    offset = mark + sum(len(line) + len("\n".encode(plain)) for line in raw[:first])
+    raw = head[mark:].split(ending.encode(plain))
+    offset = mark + sum(len(line) + len(ending.encode(plain)) for line in raw[:first])
     if plain.startswith("utf-16"):  # a byte pair must not be taken apart
         text = head[mark:].decode(plain, errors="replace")
-        offset = mark + len("\n".join([*text.split("\n")[:first], ""]).encode(plain))
+        offset = mark + len(ending.join([*text.split(ending)[:first], ""]).encode(plain))
     return Dialect(
         encoding=encoding,
         delimiter=delimiter,
@@ -121,6 +125,13 @@ def find_dialect(head: bytes, whole: bool) -> Dialect | None:
         preamble=preamble,
         rows=tuple(map(tuple, rows)),
     )
+
+
+def _is_binary(text: str) -> bool:
+    """Whether many letters are none; zeros alone are what a logger leaves that lost its power."""
+    some = text[:4000]
+    controls = sum(letter < " " and letter not in "\t\n\r\x00\x1a\x0c" for letter in some)
+    return controls > 0.02 * len(some)
 
 
 def split(line: str, delimiter: str) -> list[str]:

@@ -28,6 +28,7 @@ MOST_BYTES = 8 << 30
 MOST_MEMBERS = 200
 _PIECE = 1 << 20
 
+_ZIP = b"PK\x03\x04"
 _COMPRESSED = {b"\x1f\x8b": "gzip", b"\x28\xb5\x2f\xfd": "zstd", b"BZh": "bz2", b"\x04\x22\x4d\x18": "lz4"}
 _OTHERS = {
     b"\xd0\xcf\x11\xe0\xa1\xb1": "an Excel workbook or another Office file, expected text: save it as CSV",
@@ -44,6 +45,7 @@ _OTHERS = {
     b"\xff\xd8\xff": "a picture, expected a recording",
     b"\x7fELF": "a program, expected a recording",
     b"\x93NUMPY": "a NumPy array, expected columns with names: save it as CSV or Parquet",
+    b"ARROW1": "an Arrow or Feather file, expected CSV or Parquet: save it as Parquet",
     b"SQLite format 3": "a database; of a ROS 2 bag name the folder that it lies in",
     **{
         bytes([0x80, protocol]): "a Python pickle, which is never opened: it could run any code"
@@ -125,7 +127,7 @@ def open_content(path: Path, member: str | None = None) -> list[Content]:
         head = file.read(HEAD_BYTES)
     if not head:
         raise InputError("empty", path)
-    if head.startswith(b"PK\x03\x04"):
+    if head.startswith((_ZIP, b"PK\x05\x06")):
         return _unzipped(path, member)
     for mark, kind in _COMPRESSED.items():
         if head.startswith(mark):
@@ -218,6 +220,8 @@ def _held(path: Path, at: Path, name: str) -> Content:
     with open(at, "rb") as file:
         head = file.read(HEAD_BYTES)
     _refuse_others(path, head)
+    if head.startswith((_ZIP, *_COMPRESSED)):
+        raise InputError("an archive within an archive, expected a recording", path)
     content = Content(path, at, name, head)
     weakref.finalize(content, shutil.rmtree, at.parent, ignore_errors=True)
     return content

@@ -59,7 +59,7 @@ def open_apdm(content: Content, reading: Reading) -> Source:
                 raise InputError("an HDF5 file without sensors as APDM's", path)
             place = _chosen(path, {label: name for name, (label, *_) in found.items()}, reading.sensor)
             _, accel, gyro, time = found[place]
-            values = [np.asarray(file[name], dtype=float) for name in (accel, gyro)]
+            values = [_upright(np.asarray(file[name], dtype=float)) for name in (accel, gyro)]
             stamps = None if time is None else np.asarray(file[time], dtype=float).ravel()
             rate = float(np.ravel(file.attrs.get("SampleRate", [0.0]))[0])
     except InputError:
@@ -83,6 +83,11 @@ def open_apdm(content: Content, reading: Reading) -> Source:
         values[0][:n] * reading.sizes.get("accel", 1.0),
     )
     return Source(path, "apdm", n, iter([samples]))
+
+
+def _upright(values: np.ndarray) -> np.ndarray:
+    """A row a sample, as MATLAB's h5write does not have it."""
+    return values.T if values.ndim == 2 and values.shape[0] == 3 != values.shape[1] else values
 
 
 def _sensors(file: Any) -> dict[str, tuple[str, str, str, str | None]]:

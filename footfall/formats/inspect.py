@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from footfall.errors import InputError
+from footfall.formats.closure import rests_of
 from footfall.formats.condition import Findings, condition
 from footfall.formats.explain import described
 from footfall.formats.files import open_content
 from footfall.formats.options import Reading
 from footfall.formats.physics import likely_units
-from footfall.formats.reader import as_recording, is_simulated, judge, open_source
+from footfall.formats.reader import as_recording, is_simulated, judged, open_source
 from footfall.formats.samples import joined
 from footfall.formats.table import open_header
 from footfall.pdr.rests import BLOCK_S, still_stretches
@@ -34,6 +35,7 @@ class Inspection:
     columns : lines of a table: each column, its first cells, and what it was taken for
     findings : what was mended
     rests : (s, s) at rest
+    up : which way is up where it is stillest, in the body's axes
     gyro_noise_rad_s, accel_noise_m_s2 : per axis at rest, standard deviation; None without a rest
     gyro_most_rad_s, accel_most_m_s2 : largest of any axis
     refused : why it would not be navigated; "" where nothing speaks against it
@@ -47,6 +49,7 @@ class Inspection:
     columns: tuple[str, ...]
     findings: tuple[str, ...]
     rests: tuple[tuple[float, float], ...]
+    up: tuple[float, float, float]
     gyro_noise_rad_s: float | None
     accel_noise_m_s2: float | None
     gyro_most_rad_s: float
@@ -88,7 +91,7 @@ def inspect(
     except InputError as error:
         raise error.about(source.path, "recording") from None
     try:
-        judge(recording, findings, walk=True)
+        recording, findings = judged(recording, findings, walk=True)
         refused = ""
     except InputError as error:
         refused = error.message
@@ -129,6 +132,7 @@ def _looked_at(
         columns=columns,
         findings=tuple(findings.sentences()),
         rests=tuple((float(t[one.first]), float(t[one.stop - 1])) for one in rests),
+        up=_up(recording),
         gyro_noise_rad_s=noise[0],
         accel_noise_m_s2=noise[1],
         gyro_most_rad_s=float(np.abs(recording.gyro).max()),
@@ -137,6 +141,13 @@ def _looked_at(
         turning=bars(t, turn, width),
         force=bars(t, off, width),
     )
+
+
+def _up(recording: Recording) -> tuple[float, float, float]:
+    rows = rests_of(recording)
+    force = np.median(recording.accel[rows] if len(rows) else recording.accel, axis=0)
+    x, y, z = map(float, force / (np.linalg.norm(force) or 1.0))
+    return x, y, z
 
 
 def bars(t: np.ndarray, size: np.ndarray, width: int) -> str:

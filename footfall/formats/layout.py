@@ -50,6 +50,7 @@ class Layout:
     sensor : which of several in a file this is
     id : column that tells whose row it is, where there is one
     finer : column with nanoseconds of t, where seconds stand alone
+    mirrored : whether its accelerometers say -f
     increments : channels that hold what a rate or force adds up to over an interval
     rate_hz : as the preamble states it
     """
@@ -61,6 +62,7 @@ class Layout:
     sensor: str = ""
     id: str = ""
     finer: str = ""
+    mirrored: bool = False
     increments: frozenset[str] = frozenset()
     rate_hz: float | None = None
 
@@ -238,7 +240,11 @@ def _stated_rate(preamble: Sequence[str]) -> float | None:
 
 
 def _named(
-    name: str, marks: Sequence[str], sizes: Mapping[str, float], preamble: str = ""
+    name: str,
+    marks: Sequence[str],
+    sizes: Mapping[str, float],
+    preamble: str = "",
+    mirrored: bool = False,
 ) -> Callable[[Header], list[Layout]]:
     """A format that `csv` reads, told by its columns' names, which leave units open that its makers state."""
 
@@ -251,6 +257,7 @@ def _named(
             replace(
                 one,
                 format=name,
+                mirrored=mirrored,
                 sizes={
                     channel: sizes.get(channel.partition("_")[0]) if size is None else size
                     for channel, size in one.sizes.items()
@@ -277,7 +284,13 @@ LAYOUTS: Mapping[str, Callable[[Header], list[Layout]]] = {
     "px4": _named("px4", [r"gyro_rad\[0\]", r"accelerometer_m_s2\[0\]"], {"t": 1e-6, **_SI}),
     "shimmer": _named("shimmer", ["Timestamp_.*CAL", "Gyro_X_CAL"], {"t": 1e-3, "gyro": DEG, "accel": 1.0}),
     "gaitmap": _named("gaitmap", ["(?:left|right)_sensor.*gyr_x"], {"gyro": DEG, "accel": 1.0}),
-    "sensorlog": _named("sensorlog", ["motionRotationRateX", "accelerometerAccelerationX"], {"gyro": 1.0}),
+    # Of iPhones, as they have it.
+    "sensorlog": _named(
+        "sensorlog",
+        ["(?:motionRotationRate|gyroRotation)X", "accelerometerAccelerationX"],
+        {"gyro": 1.0, "accel": GRAVITY},
+        mirrored=True,
+    ),
     "csv": csv,
 }
 

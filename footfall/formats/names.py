@@ -14,8 +14,8 @@ from footfall.formats.units import INCREMENTS, unit_size
 
 AXES = ("x", "y", "z")
 _QUANTITIES = {
-    "gyro": "gyroscope gyro gyros gyr angularrate angularvelocity angularspeed angvel angrate rotationrate "
-    "rateofturn turnrate rotation omega drehrate winkelgeschwindigkeit gyroskop as w g",
+    "gyro": "gyroscope gyro gyros gyr gyrorotation angularrate angularvelocity angularspeed angvel angrate "
+    "rotationrate rateofturn turnrate rotation omega drehrate winkelgeschwindigkeit gyroskop as w g",
     "accel": "accelerometer accelerometers accel acceleration accelerations acc specificforce "
     "totalacceleration linearacceleration useracceleration accelerometeracceleration linearaccel lacc force "
     "beschleunigung beschl gf a f",
@@ -191,7 +191,8 @@ def _timed(words: list[str], stated: str | None) -> Named | None:
     size = None if stated is None else unit_size("t", stated)
     last, rank, sensor = places[-1], 1, []
     for place, word in enumerate(words):
-        unit = unit_size("t", word) if word not in _TIME else None
+        # "S_Foot_Timestamp" is no time in seconds.
+        unit = unit_size("t", word) if word not in _TIME and (len(word) > 1 or place > places[0]) else None
         if unit is not None:
             size = size or unit
         elif word in _TIME or word in _CLOCK:

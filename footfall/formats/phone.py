@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,7 +14,7 @@ from footfall.errors import InputError
 from footfall.formats.files import Content
 from footfall.formats.names import AXES, understood
 from footfall.formats.options import Reading
-from footfall.formats.samples import Samples, Source
+from footfall.formats.samples import MIRRORED, Samples, Source
 from footfall.formats.stamps import likely_unit
 from footfall.formats.table import Opened, open_header, open_table
 from footfall.formats.text import TextTable
@@ -58,12 +59,26 @@ def open_phone(path: Path, contents: Sequence[Content], reading: Reading) -> Sou
         # Sensor Logger takes gravity out of it, and writes it beside.
         added = _table(gravity, "accel", reading, notes, {})
         force = (force[0], force[1] + _at(force[0], added))
+    if _is_mirrored(contents):
+        force = (force[0], -force[1])
+        notes.append(MIRRORED)
     t = np.union1d(gyro[0], force[0])
     values = [np.full((len(t), 3), np.nan) for _ in range(2)]
     for made, (stamps, rows) in zip(values, (gyro, force), strict=True):
         made[np.searchsorted(t, stamps)] = rows
     unstated = frozenset({"gyro", "accel"} - set(reading.sizes))
     return Source(path, "phone", len(t), iter([Samples(0, t, *values)]), notes=notes, unstated=unstated)
+
+
+def _is_mirrored(contents: Sequence[Content]) -> bool:
+    """Whether Sensor Logger wrote -f, as iPhones have it unless units and frames are standardised."""
+    for content in contents:
+        if content.name.rsplit("/", 1)[-1].lower() == "metadata.csv":
+            lines = content.head.decode("utf-8", errors="replace").splitlines()[:2]
+            told = dict(zip(*csv.reader(lines), strict=False)) if len(lines) == 2 else {}
+            standard = told.get("standardisation", "").strip().lower() in ("true", "1", "yes")
+            return told.get("platform", "").strip().lower() == "ios" and not standard
+    return False
 
 
 def _stem(one: Opened) -> str:

@@ -5,25 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
 from footfall.columns import ACCEL, GYRO
 from footfall.conventions import GRAVITY
 from footfall.errors import InputError
+from footfall.formats.closure import misclosure, resting_force, rests_of, strides_of
+from footfall.formats.diagnosis import MISCLOSURE, Diagnosis
 from footfall.formats.samples import Samples
-from footfall.pdr.stance import moving_mean
-from footfall.pdr.strapdown import integrate
+from footfall.formats.units import UNITS
 from footfall.recording import Recording
 
 GRAVITY_TOLERANCE = 1.0  # m/s2, of the force at rest
-MISCLOSURE = (0.04, 0.16)  # g: above the first a cause is sought, above the second none need be found
 WALK_RATES = (40.0, 20_000.0)  # Hz
 MOST_CLIPPED = 0.2  # share of the samples
-STILL_S = 0.06
-REST = 0.35  # shares of RMS: stances have .03-.15, the quietest of swing .45
-STRIDES = (5, 40)  # so many are needed, so many are looked at
 GYRO_RMS = (0.02, 60.0)  # rad/s, of a walking foot
 FORCE_SPREAD = 1.0  # m/s2: less is no walk
 
@@ -32,7 +28,12 @@ _FORCES = (
     (1000.0, "they are probably in mg"),
     (0.0, "gravity was probably removed from them"),
     (32.17, "they are probably in ft/s2"),
+    *((float(1 << bits), "they are probably the sensor's raw counts") for bits in range(11, 15)),
 )
+_RATES = {"deg/s": 180 / math.pi, "mrad/s": 1e3, "mdeg/s": 180e3 / math.pi}
+BRIEF_S = 3.0  # no walk is so short
+USUAL_RMS = 3.0  # rad/s
+DEAD = 0.02  # of the liveliest axis' standard deviation: real walks' stillest axis has .24 and more
 
 
 def check_alive(recording: Recording) -> None:
@@ -57,21 +58,25 @@ def check_alive(recording: Recording) -> None:
 def likely_units(samples: Samples, unstated: frozenset[str], walk: bool) -> tuple[Samples, list[str]]:
     """Samples in SI where nothing states their unit, and only another than SI is possible; and what to tell.
 
-    Accelerometers measure gravity at rest; what the gyros say must turn it (`check_walk`).
+    Accelerometers measure gravity at rest; what the gyros say must turn it (`footfall.formats.closure`).
     """
     told: list[str] = []
     if "accel" in unstated and len(samples) > 10:
         force = resting_force(samples.t, samples.gyro, samples.accel)
-        for unit, size in (("g", GRAVITY), ("mg", GRAVITY / 1000)):
-            if abs(force * size - GRAVITY) <= GRAVITY_TOLERANCE:
-                samples = replace(samples, accel=samples.accel * size)
-                told.append(f"nothing states the accelerometers' unit: taken for {unit}")
+        sizes = {unit: UNITS["accel"][unit] for unit in ("g", "mg", "cm/s2", "mm/s2")}
+        unit, size = min(sizes.items(), key=lambda one: abs(force * one[1] - GRAVITY))
+        # m/s2 is meant where it is possible.
+        if abs(force * size - GRAVITY) <= GRAVITY_TOLERANCE < abs(force - GRAVITY):
+            samples = replace(samples, accel=samples.accel * size)
+            told.append(f"nothing states the accelerometers' unit: taken for {unit}")
     if "gyro" in unstated and walk and len(samples) > 10:
         recording = Recording(t=samples.t, gyro=samples.gyro, accel=samples.accel)
-        rests = rests_of(recording)
-        left = {size: misclosure(recording, rests, np.eye(3) * size) for size in (1.0, math.pi / 180, 1e-3)}
-        off, deg = left[1.0], left[math.pi / 180]
-        if off is not None and deg is not None and deg < off / 2 and deg < MISCLOSURE[1]:
+        strides = strides_of(recording, rests_of(recording))
+        off, deg = (
+            misclosure(recording, strides, np.eye(3) * size) if strides else 0.0
+            for size in (1.0, math.pi / 180)
+        )
+        if deg < off / 2 and deg < MISCLOSURE[1]:
             samples = replace(samples, gyro=samples.gyro * (math.pi / 180))
             told.append("nothing states the gyros' unit: taken for deg/s, with which gravity stays vertical")
     return samples, told
@@ -91,9 +96,10 @@ def check_values(recording: Recording, clipped: Mapping[str, int]) -> None:
                 f"{name} is at the end of its range in {count} of {len(recording.t)} samples", "recording"
             )
     interval = recording.interval
-    if not 1e-5 <= interval <= 1.0:
-        units = {1e-3: "ms", 1e-6: "us", 1e-9: "ns"}
-        cause = next((unit for size, unit in units.items() if 1e-4 <= interval * size <= 0.1), None)
+    brief = recording.t[-1] - recording.t[0] < BRIEF_S and len(recording.t) > 1000 and interval < 2e-4
+    if brief or not 1e-5 <= interval <= 1.0:
+        units = {1e-3: "ms", 1e-6: "us", 1e-9: "ns", 60.0: "minutes", 3600.0: "hours", 86400.0: "days"}
+        cause = next((unit for size, unit in units.items() if 5e-4 <= interval * size <= 0.1), None)
         guess = f": t is probably in {cause}" if cause else ""
         raise InputError(f"samples are {interval:.3g} s apart, expected 0.00001 to 1 s{guess}", "recording")
 
@@ -109,6 +115,8 @@ def check_gravity(recording: Recording) -> None:
     force = resting_force(recording.t, recording.gyro, recording.accel)
     if abs(force - GRAVITY) > GRAVITY_TOLERANCE:
         cause = next((f": {text}" for size, text in _FORCES if abs(force - size) <= 0.1 * max(size, 1)), "")
+        if abs(resting_force(recording.t, recording.accel, recording.gyro) - GRAVITY) <= GRAVITY_TOLERANCE:
+            cause = ": gyros and accelerometers are probably exchanged"
         raise InputError(
             f"the accelerometers measure {force:.3g} at rest, "
             f"expected {GRAVITY:.3g} +- {GRAVITY_TOLERANCE:g} m/s2{cause}",
@@ -116,18 +124,8 @@ def check_gravity(recording: Recording) -> None:
         )
 
 
-def check_walk(recording: Recording) -> float | None:
-    """Refuse what no walking foot can have measured.
-
-    From one moment of rest to the next, turning the force with the gyros and taking gravity away must leave
-    almost no velocity. It leaves metres a second where the gyros are in other units, or their axes are not
-    those of the accelerometers: median over strides, as a share of g. Of seven real walks right ones have
-    .016-.037, wrong ones .06-1.
-    (A sensor that gives -f instead of f passes: it is the mirror image of a possible walk.)
-
-    Returns
-    -------
-    That share; None where too few strides are seen.
+def check_walk(recording: Recording) -> bool:
+    """Refuse rates of samples and of turning that no walking foot has; returns whether it walks at all.
 
     Raises
     ------
@@ -142,117 +140,36 @@ def check_walk(recording: Recording) -> float | None:
     spread = float(np.linalg.norm(recording.accel, axis=1).std())
     rms = math.sqrt(np.mean(recording.gyro**2) * 3)
     if spread < FORCE_SPREAD:
-        return None  # no walk: dead reckoning will say so
+        return False  # dead reckoning will say so
     if not GYRO_RMS[0] <= rms <= GYRO_RMS[1]:
-        cause = "deg/s" if rms > GYRO_RMS[1] else "rad/s, and were taken for deg/s"
+        likely = min(_RATES, key=lambda unit: abs(math.log(rms / _RATES[unit] / USUAL_RMS)) if rms else 0.0)
+        cause = likely if rms > GYRO_RMS[1] else "rad/s, and were taken for deg/s"
         raise InputError(
             f"the gyros turn at {rms:.3g} rad/s RMS while the foot walks: they are probably in {cause}",
             "recording",
         )
-    rests = rests_of(recording)
-    off = misclosure(recording, rests, np.eye(3))
-    if off is None or off <= MISCLOSURE[0]:
-        return off
-    left = {cause: misclosure(recording, rests, change) or math.inf for cause, change in CHANGES.items()}
-    likely = min(left, key=left.__getitem__)
-    if left[likely] <= off / 2:
-        raise InputError(f"turned by its gyros, gravity does not stay vertical: {likely}", "recording")
-    if off > MISCLOSURE[1]:
-        raise InputError(
-            "turned by its gyros, gravity does not stay vertical: "
-            "the gyros' unit or axes do not match the accelerometers'",
-            "recording",
+    for names, values in ((GYRO, recording.gyro), (ACCEL, recording.accel)):
+        lively = values.std(axis=0) / values.std(axis=0).max()
+        if lively.min() < DEAD:
+            name = names[int(lively.argmin())]
+            raise InputError(
+                f"{name} hardly says anything while the others do: it is probably dead", "recording"
+            )
+    return True
+
+
+def check_closure(found: Diagnosis) -> None:
+    """Refuse what no walking foot can have measured.
+
+    (A sensor that gives -f instead of f passes: it is the mirror image of a possible walk.)
+
+    Raises
+    ------
+    InputError
+        With the likely cause.
+    """
+    if found.swapped or found.misclosure > MISCLOSURE[1]:
+        cause = (
+            found.cause or "the gyros' unit or axes do not match the accelerometers', or samples are spoilt"
         )
-    return off
-
-
-CHANGES: Mapping[str, np.ndarray] = {
-    "the gyros are probably in deg/s": np.eye(3) * math.pi / 180,
-    "the gyros are probably in rad/s, and were taken for deg/s": np.eye(3) * 180 / math.pi,
-    "the gyros probably turn the other way about every axis": -np.eye(3),
-    **{
-        f"{name} probably turns the other way": np.diag(np.where(np.arange(3) == axis, -1.0, 1.0))
-        for axis, name in enumerate(GYRO)
-    },
-    **{
-        f"the gyros' {'xyz'[a]} and {'xyz'[b]} are probably exchanged": np.eye(3)[
-            [b if i == a else a if i == b else i for i in range(3)]
-        ]
-        for a, b in ((0, 1), (0, 2), (1, 2))
-    },
-}
-
-
-def resting_force(t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> float:
-    """The force's norm where the IMU is stillest, in whatever unit."""
-    still = _unrest(t, gyro, accel)
-    quiet = still <= np.quantile(still, 0.05)
-    return float(np.median(np.linalg.norm(accel[quiet], axis=1)))
-
-
-def _unrest(t: np.ndarray, gyro: np.ndarray, accel: np.ndarray) -> np.ndarray:
-    """How unquiet the IMU is, in shares of its own RMS: whatever the units. (n,)"""
-
-    def share(x: np.ndarray) -> np.ndarray:
-        mean = float(np.mean(x))
-        return np.sqrt(np.maximum(moving_mean(x, t, STILL_S), 0) / mean) if mean else np.zeros_like(x)
-
-    turn = share((gyro**2).sum(axis=1))
-    force = np.linalg.norm(accel, axis=1)
-    rest = np.median(force[turn <= np.quantile(turn, 0.1)])
-    return turn + share((force - rest) ** 2)
-
-
-def rests_of(recording: Recording) -> np.ndarray:
-    """Samples at the stillest instants, at least half a second apart."""
-    unrest = _unrest(recording.t, recording.gyro, recording.accel)
-    return lowest(unrest, REST, max(1, round(0.5 / recording.interval)))
-
-
-def lowest(x: np.ndarray, most: float, apart: int) -> np.ndarray:
-    """Local minima of (n,) `x` of `most` at most: the lowest first, no other within `apart` samples of it.
-
-    As `scipy.signal.find_peaks(-x, height=-most, distance=apart)`, whose import takes longer than all
-    else that is done to a recording.
-    """
-    first = np.concatenate([[0], np.flatnonzero(np.diff(x)) + 1])  # of each run of equal samples
-    last = np.append(first[1:], len(x)) - 1
-    low = x[first]
-    inside = (low[1:-1] < low[:-2]) & (low[1:-1] < low[2:]) & (low[1:-1] <= most)
-    at = ((first + last) // 2)[1:-1][inside]
-    kept = np.ones(len(at), dtype=bool)
-    for i in np.argsort(-x[at])[::-1]:
-        if kept[i]:
-            near = slice(np.searchsorted(at, at[i] - apart, side="right"), np.searchsorted(at, at[i] + apart))
-            kept[near] = False
-            kept[i] = True
-    return at[kept]
-
-
-def upright(up: np.ndarray) -> np.ndarray:
-    """An attitude (4,) in which `up` (3,), of any length, points up."""
-    x, y, z = up / np.linalg.norm(up)
-    # The shortest turn; from below, after half a turn about x.
-    quaternion = np.array([1 + z, y, -x, 0.0] if z >= 0 else [y, 1 - z, 0.0, x])
-    return quaternion / np.linalg.norm(quaternion)
-
-
-def misclosure(recording: Recording, rests: np.ndarray, change: np.ndarray) -> float | None:
-    """Median over strides of the velocity left at the end over g T; None where too few strides are seen.
-
-    `change` (3, 3) is applied to the rates first.
-    """
-    gyro = recording.gyro @ change.T
-    left: list[float] = []
-    margin = max(1, round(0.02 / recording.interval))
-    for first, last in pairwise(rests):
-        t, force = recording.t[first : last + 1], recording.accel[first : last + 1]
-        duration = float(t[-1] - t[0])
-        if not 0.4 < duration < 2.0 or np.ptp(np.linalg.norm(force, axis=1)) < 3.0:
-            continue
-        up = recording.accel[max(0, first - margin) : first + margin + 1].mean(axis=0)
-        _, _, velocity = integrate(t, gyro[first : last + 1], force, quaternion=upright(up))
-        left.append(float(np.linalg.norm(velocity[-1])) / (GRAVITY * duration))
-        if len(left) == STRIDES[1]:
-            break
-    return float(np.median(left)) if len(left) >= STRIDES[0] else None
+        raise InputError(f"turned by its gyros, gravity does not stay vertical: {cause}", "recording")

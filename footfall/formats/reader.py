@@ -11,6 +11,7 @@ from typing import Any
 from footfall.errors import InputError
 from footfall.formats.bags import ULOG, is_bag, open_bag, open_ulog
 from footfall.formats.condition import FILL_S, Findings, condition
+from footfall.formats.diagnosis import Diagnosis, diagnose, unlagged
 from footfall.formats.files import open_content
 from footfall.formats.hdf5 import HDF5, is_apdm, open_apdm
 from footfall.formats.layout import LAYOUTS
@@ -18,7 +19,14 @@ from footfall.formats.matlab import is_matlab, open_matlab
 from footfall.formats.openshoe import is_openshoe, open_openshoe
 from footfall.formats.options import Reading
 from footfall.formats.phone import open_phone
-from footfall.formats.physics import check_alive, check_gravity, check_values, check_walk, likely_units
+from footfall.formats.physics import (
+    check_alive,
+    check_closure,
+    check_gravity,
+    check_values,
+    check_walk,
+    likely_units,
+)
 from footfall.formats.samples import Samples, Source, joined
 from footfall.formats.table import open_table
 from footfall.recording import Recording
@@ -126,7 +134,7 @@ def read_source(source: Source, *, walk: bool = True, gap_s: float = FILL_S) -> 
         samples, told = likely_units(samples, source.unstated, walk)
         findings = replace(findings, notes=(*source.notes, *told))
         recording = as_recording(samples, source, findings)
-        findings = replace(findings, misclosure_g=judge(recording, findings, walk))
+        recording, findings = judged(recording, findings, walk)
     except InputError as error:
         raise error.about(source.path, "recording") from None
     return recording, findings
@@ -186,7 +194,7 @@ class Blocks:
                 again = replace(found, rows=len(block))
                 self._found = again if self._found is None else merged(self._found, again)
                 if len(samples) >= JUDGED_ROWS:
-                    judge(as_recording(samples, self.source, found), found, walk=True)
+                    self._judge(as_recording(samples, self.source, found))
                 # The last two samples join the next block: doubles and holes between blocks are seen.
                 row = block.row + len(block) - 2
                 seam = replace(samples.take(slice(-2, None)), row=row)
@@ -196,6 +204,17 @@ class Blocks:
             yield _bare(seam, begin)
         except InputError as error:
             raise error.about(self.source.path, "recording") from None
+
+    def _judge(self, recording: Recording) -> None:
+        """Refuse the impossible; what else is wrong is sought once, for it takes longer than reading."""
+        assert self._found is not None
+        known = self._found.misclosure_g is not None
+        found = judge(recording, self._found, walk=True, known=known)
+        if found is None:
+            return
+        check_closure(found)
+        if not known:
+            self._found = replace(self._found, misclosure_g=found.misclosure, cause=found.cause)
 
 
 def _bare(samples: Samples, begin: float) -> Recording:
@@ -214,8 +233,30 @@ def as_recording(samples: Samples, source: Source, findings: Findings) -> Record
     )
 
 
-def judge(recording: Recording, findings: Findings, walk: bool) -> float | None:
-    """Every check of `footfall.formats.physics` that applies; returns what `check_walk` does.
+def judged(recording: Recording, findings: Findings, walk: bool) -> tuple[Recording, Findings]:
+    """The recording with its sensors at one time, and what is found about how its strides close.
+
+    Raises
+    ------
+    InputError
+        What the checks of `footfall.formats.physics` refuse.
+    """
+    found = judge(recording, findings, walk)
+    if found is not None and found.lag_s:
+        mended = unlagged(recording, found.lag_s)
+        findings = replace(findings, lag_s=found.lag_s)
+        found = diagnose(mended, clipped=True)
+        recording = replace(mended, meta={**recording.meta, "read": findings.as_dict()})
+    if found is None:
+        return recording, findings
+    check_closure(found)
+    return recording, replace(findings, misclosure_g=found.misclosure, cause=found.cause)
+
+
+def judge(recording: Recording, findings: Findings, walk: bool, known: bool = False) -> Diagnosis | None:
+    """Every check of `footfall.formats.physics` that applies but that of how strides close, and how they do.
+
+    known : whether a lag or a wrong clock would be no news
 
     Raises
     ------
@@ -226,7 +267,9 @@ def judge(recording: Recording, findings: Findings, walk: bool) -> float | None:
         check_alive(recording)
     check_values(recording, dict(findings.clipped))
     check_gravity(recording)
-    return check_walk(recording) if walk else None
+    if not walk or not check_walk(recording):
+        return None
+    return diagnose(recording, known or bool(findings.clipped) or is_simulated(recording.meta))
 
 
 def merged(first: Findings, second: Findings) -> Findings:

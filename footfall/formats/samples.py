@@ -11,6 +11,7 @@ import numpy as np
 
 from footfall.errors import InputError
 
+MIRRORED = "an iPhone's accelerometers, which say -f: turned"
 TORN = "the last row is cut short and was left out"
 
 

@@ -28,7 +28,7 @@ _UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _STAMP = re.compile(
     r"(?:(?P<year>\d{4})[-/.](?P<month>\d{1,2})[-/.](?P<day>\d{1,2})"
     r"|(?P<first>\d{1,2})[-/.](?P<second>\d{1,2})[-/.](?P<last>\d{4}))?[T ,_]*"
-    r"(?P<hour>\d{1,2})[:h-](?P<minute>\d{2})[:m-](?P<sec>\d{2})(?:[.,:_](?P<part>\d{1,9}))?"
+    r"(?P<hour>\d{1,2})[:h-](?P<minute>\d{1,2})[:m-](?P<sec>\d{1,2})(?:(?P<mark>[.,:_])(?P<part>\d{1,9}))?"
     r"\s*(?P<half>[AaPp])?\.?[Mm]?\.?\s*(?:Z|UTC|GMT|[+-]\d{2}:?\d{2})?"
 )
 
@@ -86,15 +86,21 @@ def _alike(letters: np.ndarray, first: re.Match[str], day: int) -> tuple[np.ndar
         return digits[:, start:stop].astype(float) @ 10.0 ** np.arange(stop - start)[::-1]
 
     hour = _hour(number("hour"), first["half"])
-    part = number("part") * 10.0 ** -len(first["part"]) if "part" in clock else 0.0
+    part = number("part") * _share(first) if "part" in clock else 0.0
     total = 3600 * hour + 60 * number("minute") + number("sec") + part
     return np.where(alike, total + DAY * (_day(first) - day), np.nan), alike
 
 
 def _one(match: re.Match[str], day: int) -> float:
-    part = float(f"0.{match['part']}") if match["part"] else 0.0
+    part = float(match["part"]) * _share(match) if match["part"] else 0.0
     hour = float(_hour(np.array(float(match["hour"])), match["half"]))
     return DAY * (_day(match) - day) + 3600 * hour + 60 * float(match["minute"]) + float(match["sec"]) + part
+
+
+def _share(match: re.Match[str]) -> float:
+    """What one is worth behind the seconds: after a colon it counts milliseconds, in however many digits."""
+    digits = len(match["part"])
+    return 1e-3 if match["mark"] == ":" and digits <= 3 else 10.0**-digits
 
 
 def _hour(hour: np.ndarray, half: str | None) -> np.ndarray:
@@ -140,6 +146,7 @@ class Clock:
         self._added = 0.0
         self._step = 0.0
 
+    @np.errstate(invalid="ignore")  # stamps may be infinite
     def __call__(self, t: np.ndarray) -> np.ndarray:
         """Stamps (n,) of the next block, in any unit."""
         before = np.array([] if self._last is None else [self._last])

@@ -17,7 +17,7 @@ from footfall.formats.explain import not_understood
 from footfall.formats.files import HEAD_BYTES, Content
 from footfall.formats.layout import Header, Layout, find_layouts
 from footfall.formats.options import Reading
-from footfall.formats.samples import Samples, Source
+from footfall.formats.samples import MIRRORED, Samples, Source
 from footfall.formats.stamps import DAY, Clock, is_stamp, likely_unit, seconds
 from footfall.formats.text import Batch, TextTable, floats, row_bytes
 from footfall.formats.units import UNITS
@@ -30,6 +30,7 @@ pa, pq = late("pyarrow"), late("pyarrow.parquet")
 BLOCK_ROWS = 1 << 16
 PAGE_BYTES = 1 << 18
 MOST_SENSORS = 20
+LONG_HEAD_BYTES = 1 << 22
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,7 @@ class Opened:
     dialect : of a text; None of Parquet
     file : Arrow's, of Parquet
     rows : cells of its first rows
+    head : first bytes of a text, down to these rows
     """
 
     content: Content
@@ -49,6 +51,7 @@ class Opened:
     dialect: Dialect | None = None
     file: Any = None
     rows: tuple[tuple[str, ...], ...] = ()
+    head: bytes = b""
 
 
 def open_header(content: Content, columns: Sequence[str]) -> Opened:
@@ -65,12 +68,17 @@ def open_header(content: Content, columns: Sequence[str]) -> Opened:
         file, names = _open_parquet(content)
         rows = _first_rows(file)
         return Opened(content, Header(_renamed(content.path, names, columns)), file=file, rows=rows)
-    dialect = find_dialect(content.head, whole=len(content.head) < HEAD_BYTES)
+    head = content.head
+    dialect = find_dialect(head, whole=len(head) < HEAD_BYTES)
+    if (dialect is None or not dialect.rows) and content.size > HEAD_BYTES:  # below a long preamble
+        with open(content.at, "rb") as file:
+            head = file.read(LONG_HEAD_BYTES)
+        dialect = find_dialect(head, whole=len(head) < LONG_HEAD_BYTES) or dialect
     if dialect is None:
         raise InputError("no table of numbers, text or binary, that any known format has", content.path)
     own = dialect.names or ("",) * dialect.width
     header = Header(_renamed(content.path, own, columns), dialect.units, dialect.preamble)
-    return Opened(content, header, dialect, rows=dialect.rows)
+    return Opened(content, header, dialect, rows=dialect.rows, head=head)
 
 
 def _renamed(path: Path, own: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:
@@ -100,7 +108,7 @@ def open_table(content: Content, name: str, reading: Reading) -> Source:
     found = find_layouts(content.path, opened.header, name)
     if not found:
         raise not_understood(content.path, opened.header, opened.rows, name)
-    layout = chosen(content.path, found, reading.sensor)
+    layout = _with_a_clock(chosen(content.path, found, reading.sensor), opened)
     rate_hz = reading.rate_hz or layout.rate_hz
     if "t" not in layout.columns and rate_hz is None:
         raise InputError("no column of time, and no rate (Hz) was given instead (--rate)", content.path)
@@ -117,8 +125,19 @@ def open_table(content: Content, name: str, reading: Reading) -> Source:
         rows = opened.file.metadata.num_rows
     else:
         assert opened.dialect is not None
-        rows = content.size // row_bytes(content.head, opened.dialect)
+        rows = content.size // row_bytes(opened.head, opened.dialect)
     return Source(content.path, layout.format, rows, iter(blocks), meta, notes, unstated)
+
+
+def _with_a_clock(layout: Layout, opened: Opened) -> Layout:
+    """Without a column of time that is empty, where the rate stands above the table."""
+    name = layout.columns.get("t")
+    if name is None or not opened.rows or layout.rate_hz is None:
+        return layout
+    place = list(opened.header.names).index(name)
+    if any(row[place] for row in opened.rows if place < len(row)):
+        return layout
+    return replace(layout, columns={k: v for k, v in layout.columns.items() if k != "t"}, finer="")
 
 
 def chosen(path: Path, found: Sequence[Layout], sensor: str | None) -> Layout:
@@ -162,6 +181,8 @@ class _Rows:
         if self.reading.sensor is not None and self.layout.id and self.reading.sensor not in self.sensors:
             names = ", ".join(self.sensors) or "none"
             raise InputError(f"holds no sensor {self.reading.sensor!r}, but {names}", self.path)
+        if self.layout.mirrored:
+            self.notes.append(MIRRORED)
         if self.clock.rounds:
             self.notes.append(f"t starts anew {self.clock.rounds} times: made to go on")
 
@@ -182,8 +203,12 @@ class _Rows:
     def _stamped(self) -> bool:
         """Whether t is written as dates or clocks."""
         name = self.layout.columns.get("t")
-        if name is None or self.opened.dialect is None:
+        if name is None:
             return False
+        if self.opened.dialect is None:
+            schema, own = self.opened.file.schema_arrow, list(self.opened.header.names)
+            if not _is_text(schema.types[own.index(name)]):
+                return False
         place = list(self.opened.header.names).index(name)
         cells = [row[place] for row in self.opened.rows[:10] if row[place]]
         return any(map(is_stamp, cells))
@@ -221,7 +246,7 @@ class _Rows:
             if channel != "t"
         }
         gyro = np.column_stack([found[name] for name in GYRO])
-        accel = np.column_stack([found[name] for name in ACCEL])
+        accel = np.column_stack([found[name] for name in ACCEL]) * (-1 if layout.mirrored else 1)
         distrusted = np.zeros(len(gyro), dtype=bool)
         for name in layout.valid:
             distrusted |= batch[name] == 0
@@ -265,6 +290,9 @@ def _open_parquet(content: Content) -> tuple[Any, list[str]]:
         # Page by page: left to itself Arrow reads ahead, and holds what it has read to the end.
         file = pq.ParquetFile(content.at, pre_buffer=False, buffer_size=PAGE_BYTES)
         names = [_flat(name) for name in file.schema_arrow.names]
+        if "__index_level_0__" in names:  # pandas' index without a name: a time, if it is one
+            place = names.index("__index_level_0__")
+            names[place] = "time" if pa.types.is_timestamp(file.schema_arrow.types[place]) else names[place]
     except (pa.ArrowException, OSError) as error:
         raise InputError(
             f"not a readable Parquet file ({str(error).splitlines()[0]})", content.path
@@ -300,6 +328,7 @@ def _parquet(opened: Opened, wanted: Sequence[str], texts: Sequence[str]) -> Ite
     for name in wanted:
         kind = file.schema_arrow.field(own[name]).type
         numeric = pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)
+        numeric = numeric or pa.types.is_decimal(kind) or pa.types.is_duration(kind)
         if not (numeric or name in texts or pa.types.is_timestamp(kind)):
             raise InputError(f"column {name!r} holds {kind}, expected numbers", path)
     try:
@@ -310,10 +339,16 @@ def _parquet(opened: Opened, wanted: Sequence[str], texts: Sequence[str]) -> Ite
         raise InputError(f"not a readable Parquet file ({str(error).splitlines()[0]})", path) from None
 
 
+def _is_text(kind: Any) -> bool:
+    return bool(pa.types.is_string(kind) or pa.types.is_large_string(kind))
+
+
 def _values(column: Any, text: bool) -> Any:
     if text:
         return column.to_pylist()
-    if pa.types.is_timestamp(column.type):
+    if pa.types.is_decimal(column.type):
+        return floats(column.cast(pa.float64()))
+    if pa.types.is_timestamp(column.type) or pa.types.is_duration(column.type):
         unit = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[column.type.unit]
         return floats(column.cast(pa.int64())) * unit
     return floats(column)

@@ -53,7 +53,7 @@ def test_a_page_without_a_mark_is_told_and_left_alone(tmp_path):
         ("results", ["hdr", "hdr noise", "hdr mounts"]),
         ("swaying", ["stages", "gain", "errors"]),
         ("real_recordings", ["recordings", "targets", "methods", "detectors pdr", "detectors iez"]),
-        ("real_recordings", ["strides", "mechanics", "bias", "clipped", "drift"]),
+        ("real_recordings", ["strides", "mechanics", "late", "bias", "clipped", "drift"]),
     ],
 )
 def test_every_page_has_a_place_for_its_tables(page, names, tmp_path):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.speed import long_recording
-from benchmarks.validation import real_recordings
+from benchmarks.validation import closing, real_recordings
 from benchmarks.validation._real import find
 from tests.helpers.commands import write_csv
 from tests.helpers.synthetic_foot import walk
@@ -60,7 +60,7 @@ def test_it_measures_prints_and_fills_its_page(folder, tmp_path, capsys, monkeyp
     few = {name: real_recordings.DETECTORS[name] for name in ("threshold", "shoe", "patient")}
     monkeypatch.setattr(real_recordings, "DETECTORS", few)
     page, figure, out = tmp_path / "page.md", tmp_path / "tracks.png", tmp_path / "out.json"
-    marks = ("recordings", "targets", "methods", "detectors pdr", "detectors iez", "strides", "mechanics")
+    marks = ("recordings", "targets", "methods", "detectors pdr", "detectors iez", "strides")
     marks += ("bias", "clipped", "drift")
     page.write_text("".join(f"# {mark}\n<!-- table {mark} -->\noutdated\n<!-- end -->\n" for mark in marks))
     monkeypatch.setattr(real_recordings, "STRIDES", {"xio long": STRIDES})
@@ -78,6 +78,19 @@ def test_it_measures_prints_and_fills_its_page(folder, tmp_path, capsys, monkeyp
     assert by["gdin 32", "threshold", "pdr"]["rmse_m"] == pytest.approx(0.3 * np.sqrt(8) / 9, abs=0.01)
     assert "lost" not in text
     assert "Strides found less true" in capsys.readouterr().out
+
+
+def test_how_strides_close_is_printed_and_fills_its_page(folder, tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("<!-- table mechanics -->\n<!-- end -->\n\n<!-- table late -->\n<!-- end -->\n")
+    closing.main(["--data", str(folder), "--page", str(page)])
+    rows = [line.strip("| ").split(" | ") for line in page.read_text().splitlines() if line.startswith("|")]
+    told = {row[0]: row[1:] for row in rows}
+    assert told["gyros 40 ms later"] == ["late 40 ms"] * 2
+    assert told["stamps +10 %"] == ["rate 1.10"] * 2 or "either" in told["stamps +10 %"]
+    assert told["-f"] == ["-", "-"]
+    assert max(map(float, told["as they are"])) < 0.01
+    assert min(map(float, told["the gyros probably turn the other way about every axis"])) > 0.1
 
 
 def test_an_empty_folder_is_told(tmp_path):

@@ -3,9 +3,12 @@
 import numpy as np
 import pytest
 
+from benchmarks.validation._real import find
+from benchmarks.validation.real_recordings import TARGETS
 from footfall.errors import InputError
 from footfall.formats.options import Reading
 from footfall.hdr.tracking import track
+from footfall.scenarios.judge.reference import score_closure, score_footprints
 
 HEADERLESS = Reading(columns=("ax", "ay", "az", "gx", "gy", "gz"), rate_hz=200.0)
 
@@ -104,9 +107,30 @@ def test_every_stride_of_a_fast_walk_is_found(door):
 
 @pytest.mark.parametrize("rate", [250.0, 400.0])
 def test_a_wrong_rate_is_warned_of(door, rate):
-    assert "the rate or a unit" in " ".join(track(door / "no_time_200hz.csv", rate_hz=rate).warnings)
+    told = " ".join(track(door / "no_time_200hz.csv", rate_hz=rate).warnings)
+    assert float(told.partition("samples came at ")[2].partition(" Hz")[0]) == pytest.approx(200, rel=0.02)
 
 
 def test_a_rate_with_which_legs_would_be_too_long_is_refused(door):
     with pytest.raises(InputError, match="the rate, the units or the axes are probably wrong"):
         track(door / "no_time_200hz.csv", rate_hz=150.0)
+
+
+NAMES = ("openshoe 31", "openshoe 44", "gdin 32", "gdin 36", "gdin 45", "xio long", "xio short")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_real_walks_meet_their_targets_with_the_defaults(real_data, name):
+    """OpenShoe returns within .15 % of its way, gdin meets its footprints to .22 m, x-io returns to .16 m."""
+    (real,) = [one for one in find(real_data) if one.name == name]
+    found = track(real.path)
+    assert not found.warnings
+    closed, prints = score_closure(found.track), real.footprints
+    if prints is not None:
+        laid = score_footprints(found.track, prints)
+        assert laid.matched == laid.footprints
+        error = laid.footprint_rmse_m
+    else:
+        error = closed.return_error_pct if real.group == "openshoe" else closed.return_error_m
+    assert TARGETS == {"openshoe": 0.15, "gdin": 0.22, "xio": 0.16}
+    assert error <= TARGETS[real.group]

@@ -35,6 +35,8 @@ def test_a_recording_is_looked_into(foot, file):
     assert found.rests[0][0] < 0.1
     assert found.rests[0][1] == pytest.approx(1.5, abs=0.2)
     assert found.refused == ""
+    # The IMU's x axis points down by 20 degrees.
+    np.testing.assert_allclose(found.up, [-np.sin(np.radians(20)), 0, np.cos(np.radians(20))], atol=0.05)
     assert found.turning[:10].strip() == ""
     assert "█" in found.turning
 
@@ -54,7 +56,14 @@ def test_a_file_or_pipe_of_another_encoding_gets_what_it_can_hold(file, encoding
 def test_the_command_shows_it(cli, file):
     code, out, _ = cli(f"inspect {file}")
     assert code == 0
-    for told in ("gx (deg/s)", "its unit is stated", "200 Hz", "noise at rest", "turns  |"):
+    for told in (
+        "gx (deg/s)",
+        "its unit is stated",
+        "200 Hz",
+        "up at rest: x -0.3",
+        "noise at rest",
+        "turns  |",
+    ):
         assert told in out
     code, out, _ = cli(f"inspect {file} --json")
     assert one_document(out)["refused"] == ""

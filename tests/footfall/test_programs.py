@@ -55,6 +55,118 @@ def witmotion_usb(foot):
     )
 
 
+def witmotion_wide(foot):
+    """Its first programs: blanks, date and time in columns of their own, no units."""
+    head = [
+        "Start time: 2024-02-29 23:59:50.000",
+        " Address Date Time ax ay az wx wy wz AngleX AngleY AngleZ T hx hy hz q0 q1 q2 q3",
+    ]
+    rest = ["1.1", "2.2", "3.3", "25.1", "12", "-40", "300", "1.0", "0.0", "0.0", "0.0"]
+    return lines(
+        foot,
+        lambda t, w, f: ["0x50", *iso(t, " ")[:-3].split(), *numbers(f / GRAVITY, w / DEG), *rest],
+        head,
+        "  ",
+    )
+
+
+def witmotion_unpadded(foot):
+    """Stamps without leading zeros, the last number in milliseconds."""
+    head = ["time\tDeviceName\tAccX(g)\tAccY(g)\tAccZ(g)\tAsX(°/s)\tAsY(°/s)\tAsZ(°/s)\tAngleX(°)"]
+
+    def stamp(t):
+        ms = round(1000 * t) + 55_000
+        return f"2024-2-29 9:{4 + ms // 60_000}:{ms // 1000 % 60}:{ms % 1000}"
+
+    return lines(
+        foot,
+        lambda t, w, f: [stamp(t), "WT901", *numbers(f / GRAVITY, w / DEG), "0.1"],
+        head,
+        "\t",
+    )
+
+
+def witmotion_chip(foot):
+    """The present PC program: two clocks, names in words."""
+    names = ["Time", "Device name", "Chip Time()", *(f"Acceleration {a}(g)" for a in "XYZ")]
+    names += [f"Angular velocity {a}(°/s)" for a in "XYZ"] + [f"Angle {a}(°)" for a in "XYZ"]
+    names += [f"Magnetic field {a}(uT)" for a in "XYZ"] + [f"Quaternions {i}()" for i in range(4)]
+    rest = ["0.1", "0.2", "0.3", "12", "-4", "40", "1", "0", "0", "0"]
+    return lines(
+        foot,
+        lambda t, w, f: [
+            " " + iso(t, " ")[11:-3],
+            "WTSDCL(f5:e6)",
+            " " + iso(t, " ")[:-3],
+            *numbers(f / GRAVITY, w / DEG),
+            *rest,
+        ],
+        [",".join(names)],
+    )
+
+
+def sensorlog(foot):
+    """An iPhone's, which says -f."""
+    names = ["loggingTime(txt)", "loggingSample(N)"]
+    names += [f"accelerometerAcceleration{a}(G)" for a in "XYZ"]
+    names += [f"motionRotationRate{a}(rad/s)" for a in "XYZ"]
+    names += [f"motionUserAcceleration{a}(G)" for a in "XYZ"] + ["motionYaw(rad)", "label(N)"]
+    return lines(
+        foot,
+        lambda t, w, f: [
+            iso(t, " ")[:-3] + " +0100",
+            str(round(200 * t)),
+            *numbers(-f / GRAVITY, w, (f - [0, 0, GRAVITY]) / -GRAVITY),
+            "0.1",
+            "0",
+        ],
+        [",".join(names)],
+    )
+
+
+def sensorlog_raw(foot):
+    """With the gyros themselves, and a clock for each sensor."""
+    names = ["loggingTime(txt)", "loggingSample(N)", "accelerometerTimestamp_sinceReboot(s)"]
+    names += [f"accelerometerAcceleration{a}(G)" for a in "XYZ"] + ["gyroTimestamp_sinceReboot(s)"]
+    names += [f"gyroRotation{a}(rad/s)" for a in "XYZ"] + ["motionYaw(rad)", "label(N)"]
+
+    def cells(t, w, f):
+        clock = f"{t + 4321.25:.6f}"
+        first = [iso(t, " ")[:-3] + " +0100", str(round(200 * t)), clock]
+        return [*first, *numbers(-f / GRAVITY), clock, *numbers(w), "0.1", "0"]
+
+    return lines(foot, cells, [",".join(names)])
+
+
+def shimmer_quoted(foot):
+    """Consensys with commas: its first line stands in quotes."""
+    names = ["Timestamp_Unix_CAL", *(f"Accel_WR_{a}_CAL" for a in "XYZ"), *(f"Gyro_{a}_CAL" for a in "XYZ")]
+    head = [
+        '"sep=,"',
+        ",".join(f"S_Foot_{name}" for name in names) + ",",
+        "ms,m/(s^2),m/(s^2),m/(s^2),deg/s,deg/s,deg/s,",
+    ]
+    return lines(foot, lambda t, w, f: [f"{1.7e12 + 1000 * t:.3f}", *numbers(f, w / DEG), ""], head)
+
+
+def xsens_without_clock(foot):
+    """MT Manager with columns of clocks that stay empty: the rate stands above."""
+    head = [
+        "// Start Time: Unknown",
+        "// Update Rate: 200.0Hz",
+        "// Filter Profile: human (46.1)",
+        "// Firmware Version: 4.0.2",
+        "PacketCounter\tSampleTimeFine\tYear\tMonth\tUTC_Nano\tUTC_Second\tUTC_Valid\tAcc_X\tAcc_Y\tAcc_Z"
+        "\tGyr_X\tGyr_Y\tGyr_Z\tMag_X\tMag_Y\tMag_Z\tMat[1][1]\tMat[2][1]",
+    ]
+    return lines(
+        foot,
+        lambda t, w, f: [f"{3583 + round(200 * t):05d}", *[""] * 6, *numbers(f, w), *["0.5"] * 5],
+        head,
+        "\t",
+    )
+
+
 def shimmer(foot):
     """Consensys: sep=, names, units, tabs; wide range beside low noise, which ends at 2 g."""
     names = ["Timestamp_Unix_CAL", *(f"Accel_WR_{a}_CAL" for a in "XYZ")]
@@ -191,6 +303,13 @@ def px4(foot):
 PROGRAMS = {
     "WitMotion, Bluetooth": witmotion_bluetooth,
     "WitMotion, PC": witmotion_usb,
+    "WitMotion, first programs": witmotion_wide,
+    "WitMotion, stamps without zeros": witmotion_unpadded,
+    "WitMotion, two clocks": witmotion_chip,
+    "SensorLog": sensorlog,
+    "SensorLog, raw": sensorlog_raw,
+    "Shimmer, quoted": shimmer_quoted,
+    "Xsens without a clock": xsens_without_clock,
     "Shimmer Consensys": shimmer,
     "Physics Toolbox": physics_toolbox,
     "Physics Toolbox, decimal commas": physics_toolbox_clock,
@@ -202,6 +321,10 @@ PROGRAMS = {
     "PX4's CSV": px4,
 }
 NAMED = {
+    "SensorLog": "sensorlog",
+    "SensorLog, raw": "sensorlog",
+    "Shimmer, quoted": "shimmer",
+    "Xsens without a clock": "xsens",
     "Shimmer Consensys": "shimmer",
     "EuRoC": "euroc",
     "Xsens MT Manager": "xsens",
@@ -218,6 +341,11 @@ def test_a_file_of_a_program(foot, tmp_path, program):
     choice = Reading(sensor="right") if program == "gaitmap" else Reading()
     findings = same(tmp_path / "a.csv", foot, atol=1e-4, reading=choice)
     assert findings.format == NAMED.get(program, "csv")
+
+
+def test_a_degree_sign_in_chinese_letters(foot, tmp_path):
+    (tmp_path / "a.txt").write_bytes(witmotion_chip(foot).encode("gbk"))
+    same(tmp_path / "a.txt", foot, atol=1e-4)
 
 
 def archive(path, tables):
@@ -251,6 +379,36 @@ def test_an_archive_of_sensor_logger(foot, tmp_path):
     same(tmp_path / "sum.zip", foot)
     archive(tmp_path / "total.zip", tables | {"TotalAcceleration.csv": table(foot.accel)})
     same(tmp_path / "total.zip", foot)
+
+
+LOGGER = "version,device name,recording epoch time,platform,appVersion,sampleRateMs"
+
+
+@pytest.mark.parametrize(
+    ("head", "told", "sign"),
+    [
+        (LOGGER, "3,phone,1700000000000,ios,1.28,5|5", -1),
+        (LOGGER + ",standardisation,platform version", "3,phone,1700000000000,ios,1.40,5|5,false,17.4", -1),
+        (LOGGER + ",standardisation,platform version", "3,phone,1700000000000,ios,1.40,5|5,true,17.4", 1),
+        (LOGGER + ",standardisation,platform version", "3,phone,1700000000000,android,1.40,5|5,false,14", 1),
+    ],
+)
+def test_an_iphones_archive_says_minus_f(foot, tmp_path, head, told, sign):
+    stamp = lambda t: [str(NS + round(1e9 * t)), f"{t:.6f}"]  # noqa: E731
+
+    def table(values):
+        return alone(foot, "time,seconds_elapsed,z,y,x", stamp, values, (2, 1, 0))
+
+    gravity = np.tile([1.2, -0.4, 9.72], (len(foot.t), 1))
+    tables = {
+        "Gyroscope.csv": table(foot.gyro),
+        "Accelerometer.csv": table(sign * (foot.accel - gravity)),
+        "Gravity.csv": table(sign * gravity),
+        "Metadata.csv": f"{head}\n{told}\n",
+    }
+    archive(tmp_path / "a.zip", tables)
+    findings = same(tmp_path / "a.zip", foot)
+    assert ("an iPhone's accelerometers" in " ".join(findings.sentences())) == (sign < 0)
 
 
 def test_an_archive_of_phyphox(foot, tmp_path):

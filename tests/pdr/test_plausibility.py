@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from footfall.pdr.plausibility import doubtful_rows, judge_track, longest_movement, velocity_left
+from footfall.pdr.plausibility import (
+    doubtful_rows,
+    judge_track,
+    longest_movement,
+    spoilt_share,
+    velocity_left,
+)
 from footfall.pdr.reckoning import PdrParams, detect
 from footfall.recording import Recording
 from tests.helpers.synthetic_foot import walk
@@ -83,3 +89,22 @@ def test_a_hole_makes_the_stride_around_it_doubtful():
     np.testing.assert_array_equal(doubtful_rows(t, [(1.2, 1.4)]), [False, False, True, False])
     np.testing.assert_array_equal(doubtful_rows(t, [(0.9, 1.1)]), [False, True, True, False])
     assert not doubtful_rows(t, [(3.2, 3.4)]).any()
+
+
+def test_the_bias_is_taken_off_before_velocity_is_left():
+    truth = walk(np.zeros(9), still_s=3.0, rate=200.0)
+    biased = Recording(truth.t[1:], truth.gyro[1:] + np.radians([1.0, 3.0, -2.0]), truth.accel[1:])
+    assert velocity_left(biased, detect(biased, PARAMS), PARAMS) < 0.05
+
+
+def test_height_is_gained_upwards():
+    likely = judged([1.4] * 9, rise=0.1)
+    assert likely.height_m == pytest.approx(0.9)
+    assert "height +0.90 m" in likely.line()
+    assert judged([1.4] * 9, rise=-0.1).height_m == pytest.approx(-0.9)
+
+
+def test_filled_and_clipped_samples_are_spoilt():
+    found = {"filled": 10, "clipped": {"gyro_x": 5, "accel_z": 7}, "rows": 100}
+    assert spoilt_share(found) == pytest.approx(0.17)
+    assert spoilt_share({}) == 0.0

@@ -52,6 +52,20 @@ def test_a_short_rest_is_enough_to_be_level(still):
     assert len(navigated(recording)) == 9
 
 
+def test_people_lean_before_they_step():
+    """The tenth of a second before the first movement is no rest."""
+    recording = recorded(before=3.0, cut=3.0 - 0.45)
+    moved = np.flatnonzero(np.linalg.norm(recording.gyro - BIAS, axis=1) > np.radians(4))[0]
+    assert recording.t[find_rest(recording, PARAMS).last] < recording.t[moved] - 0.1
+
+
+@pytest.mark.parametrize(("turn", "rests"), [(20.0, 1), (40.0, 0)])
+def test_a_turntable_is_no_rest(turn, rests):
+    t = np.arange(1000) / RATE
+    gyro = np.tile(np.radians([0.0, 0.0, turn]), (len(t), 1))
+    assert len(still_stretches(Recording(t, gyro, np.tile([0.0, 0.0, GRAVITY], (len(t), 1))))) == rests
+
+
 def test_a_later_rest_counts_by_its_square():
     """Half a second at the start knows the bias badly, eight at the end well: these decide."""
     recording = recorded(before=3.0, cut=2.2, after=8.0)
@@ -67,6 +81,26 @@ def test_two_rests_that_differ_are_weighed():
     gyro[recording.t < 4.5] += np.radians([0.0, 0.0, 0.1])
     found = find_rest(Recording(recording.t, gyro, recording.accel), PARAMS).gyro_bias - BIAS
     assert 0 < np.degrees(found[2]) < 0.1 / 3
+
+
+@pytest.mark.parametrize(("change", "told"), [(0.0, False), (0.3, False), (2.0, True), (-2.0, True)])
+def test_a_bias_that_changes_between_rests_is_told(change, told):
+    recording = recorded(before=4.5, after=4.5)
+    gyro = recording.gyro.copy()
+    gyro[recording.t > 10] += np.radians([0.0, 0.0, change])
+    found = find_rest(Recording(recording.t, gyro, recording.accel), PARAMS).changed
+    assert bool(found) == told
+    if told:
+        assert np.degrees(found) == pytest.approx(abs(change), rel=0.05)
+
+
+def test_short_rests_may_differ_by_more():
+    """In half a second a foot sways by as much as a bias may be."""
+    recording = recorded(before=3.0, cut=2.4, after=4.5)
+    for change, told in ((1.2, False), (4.0, True)):
+        gyro = recording.gyro.copy()
+        gyro[recording.t > 8] += np.radians([0.0, 0.0, change])
+        assert bool(find_rest(Recording(recording.t, gyro, recording.accel), PARAMS).changed) == told
 
 
 def test_a_recording_without_rest_begins_at_its_first_stance():
