@@ -49,7 +49,9 @@ nb_execution_raise_on_error = True
 nb_merge_streams = True
 
 autosummary_generate = True
-autodoc_typehints = "none"  # the docstrings tell shapes and units, which say more
+autodoc_typehints = "signature"  # shapes and units are in the docstrings
+autodoc_typehints_format = "short"
+python_maximum_signature_line_length = 80
 numpydoc_show_class_members = False
 # A docstring of one summary, whose parameters are there, in their order.
 numpydoc_validation_checks = {

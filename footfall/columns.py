@@ -18,7 +18,7 @@ _SAMPLES = {"t": "s", **dict.fromkeys(GYRO, "rad/s"), **dict.fromkeys(ACCEL, "m/
 
 RECORDING: Mapping[str, str] = {**_SAMPLES, "temperature": "degC"}
 FOOTFALLS: Mapping[str, str] = {"t": "s", **dict.fromkeys(PLACE, "m"), "heading": "rad"}
-TRACK = FOOTFALLS  # what every track has, anyone's
+TRACK = FOOTFALLS  # what every track has, from whatever program
 WALK: Mapping[str, str] = {
     "t": "s",
     **dict.fromkeys(POSITION, "m"),

@@ -3,7 +3,31 @@
 from __future__ import annotations
 
 import os
+import re
 from typing import Self
+
+_WORDS = (  # pydantic's, and ours
+    (
+        r"(?:Input|List|Tuple|String) should (?:be|have) (.*?)(?:, unable to .*| after validation.*)?$",
+        r"expected \1",
+    ),
+    (r"expected greater than or equal to ", "expected at least "),
+    (r"expected greater than ", "expected more than "),
+    (r"expected less than or equal to ", "expected at most "),
+    (r"expected a valid integer", "expected a whole number"),
+    (r"expected a valid number", "expected a number"),
+    (r"expected a valid string", "expected text"),
+    (r"expected a valid boolean", "expected true or false"),
+    (r"expected a valid (?:list|tuple)", "expected a list"),
+    (r"expected a valid dictionary(?: or instance of \w+)?", "expected a table"),
+)
+
+
+def reworded(message: str) -> str:
+    """What pydantic says of a value, in the words of our messages: "expected at least 0"."""
+    for theirs, ours in _WORDS:
+        message = re.sub(theirs, ours, message)
+    return message
 
 
 class InputError(ValueError):

@@ -14,7 +14,7 @@ from footfall.columns import ACCEL, GYRO, POSITION, QUATERNION, RECORDING
 from footfall.errors import InputError
 from footfall.identity import content_digest
 from footfall.shown import Shown, draw_triads
-from footfall.tables import column_names, read_table, require_columns, write_table
+from footfall.tables import read_table, require_columns, write_table
 
 
 @dataclass(frozen=True)
@@ -114,17 +114,6 @@ def refuse_truth(path: str | os.PathLike[str], names: Iterable[str]) -> None:
         raise InputError(
             "is the truth of a walk, expected what an IMU recorded of it: first "
             f"`footfall record {path} --imu perfect -o FILE` (or another IMU)",
-            path,
-        )
-
-
-def refuse_recording(path: str | os.PathLike[str]) -> None:
-    """Raise InputError where a file is a recording, and the truth of a walk is wanted."""
-    names = column_names(path)
-    if set(GYRO) <= set(names) and not is_truth(names):
-        raise InputError(
-            "is a recording, expected a walk that `footfall walk` wrote (to add an IMU's errors to a "
-            "recording: `footfall record --from-recording`)",
             path,
         )
 

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from footfall.errors import InputError
+from footfall.errors import InputError, reworded
 from footfall.settings import did_you_mean
 
 
@@ -71,9 +71,13 @@ def checked(table: Mapping[str, Any], model: type[Model], source: str) -> Model:
             raise InputError(told, source) from None
         if first["type"] == "missing":
             raise InputError(f"key {key!r} is missing", source) from None
+        if first["type"] == "union_tag_invalid":
+            tag, known = first["ctx"]["tag"], re.findall(r"'(.*?)'", first["ctx"]["expected_tags"])
+            asked = first["ctx"]["discriminator"].strip("'")
+            raise InputError(f"{key}, {asked} = {tag!r}: unknown{did_you_mean(tag, known)}", source) from None
         # A whole table is no help; the message of a model's own check says what is wrong with it.
         value = "" if isinstance(first["input"], dict | list) else f" = {first['input']!r}"
-        reason = first["msg"] if "error" not in first.get("ctx", {}) else str(first["ctx"]["error"])
+        reason = str(first.get("ctx", {}).get("error") or reworded(first["msg"]))
         raise InputError(f"{key}{value}: {reason}" if key else reason, source) from None
 
 

@@ -1,4 +1,4 @@
-"""Named checks of a method, anybody's or built in: what every study relies on, on feet of known truth.
+"""Named checks of a method, built in or your own: what every study relies on, on feet of known truth.
 
 The idea is that of scikit-learn's `check_estimator`. Each check is a function that raises `Failed` with one
 sentence; under pytest: `@pytest.mark.parametrize(("name", "check"), checks(method))`.

@@ -11,7 +11,7 @@ from footfall.settings import require, setting
 
 @dataclass(frozen=True)
 class DirectionParams:
-    """Evenly spaced directions, of which one is `reference`.
+    """Evenly spaced directions; `reference` is one of them.
 
     Attributes
     ----------

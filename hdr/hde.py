@@ -31,7 +31,7 @@ class Hde2010Params:
         that it can keep up with
     theta_w : rad/s, rate of turn over a stride above which it rests, and below which it slows down; infinite
         for a controller that never does
-    directions : the dominant directions, of which one must be known
+    directions : the dominant directions; one of them must be known
     """
 
     i_c: float = setting(math.radians(0.3), unit="rad", ge=0)

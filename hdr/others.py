@@ -149,7 +149,7 @@ def _told(error: BaseException, file: str = "") -> str:
 
 
 def adapted(found: Any, *, use: str = "", name: str | None = None, needs: Needs | None = None) -> Method:
-    """Anybody's callable as a method.
+    """Any callable as a method.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """The heading of a step: where the foot points, where the step goes, or both.
 
-Methods of dominant directions judge "the heading angle of step s", of which Deng et al. (2018, section 2.4)
-say that their navigation computes it, and no more. Two angles fit these words: the yaw of the IMU at the
+Methods of dominant directions judge "the heading angle of step s". Deng et al. (2018, section 2.4) say only
+that their navigation computes it. Two angles fit these words: the yaw of the IMU at the
 stance, and the course, the direction of the stride that ends there. A corridor guides the course. The foot
 points beside it by the toe-out, which differs between people, between feet, and between standing and walking.
 """

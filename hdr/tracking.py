@@ -39,7 +39,7 @@ from footfall.pdr.stream import dead_reckon_blocks
 from footfall.pdr.track import Track
 from footfall.settings import changed, did_you_mean
 
-SIMULATED = ("hdr", "threshold")  # method and detector where nobody says others
+SIMULATED = ("hdr", "threshold")  # method and detector unless others are asked for
 REAL = ("iez", "patient")
 TOO_LONG = "hdr"  # iez needs all samples
 
@@ -109,17 +109,25 @@ def track(
 
     Parameters
     ----------
+    path : of the recording, as its logger wrote it
     method : as `footfall.hdr.methods.find_method` takes it: a name, or your own method; None for `hdr` of a
         simulated recording and `iez` of a real one
+    format, sizes, rate_hz : as of `footfall.formats.read`
     detector : name in `DETECTORS`; None for `threshold` of a simulated recording and `patient` of a real one
-    format, sizes, rate_hz, reading : as of `footfall.formats.read`
     bias_s : s, T_bias; None for all rests of the recording (`footfall.pdr.rests.find_rest`); of a simulated
         one for as long as it rests at the start, at most 25
     start : where the IMU rests before the walk; None for what the recording says (`StartPose.of`)
     heading : rad, at the start, in place of the start's own
     directions, reference : dominant directions, for methods that use them: how many (None for 4), and one
         of them (rad; None for that in which the walk sets out)
-    values : address -> value of `pdr`, `filter` and the method's own parameters, as `--set` takes them
+    values : address -> value of `pdr`, `filter` and the method's own parameters, as ``--set`` takes them
+    reading : as of `footfall.formats.read`
+
+    Returns
+    -------
+    Tracked
+        `track` is the track, `findings` what was found in the file, `bias_s` the time of the static bias (s),
+        `plausibility` that of the track; `notes` and `warnings` are sentences for people.
 
     Raises
     ------

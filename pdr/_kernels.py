@@ -84,7 +84,7 @@ def reckon(t, gyro, accel, bias, q0, resets, tilt_gain):  # type: ignore[no-unty
 
     bias : (3,) rad/s, is taken off the gyro
     resets[0] is the sample that the pose (q0, origin) belongs to.
-    Third come the sums of `footfall.pdr.strides.Sums`, of which no pose depends.
+    Third come the sums of `footfall.pdr.strides.Sums`, on which no pose depends.
     """
     m = len(resets)
     quaternion, position, sums = np.empty((m, 4)), np.zeros((m, 3)), np.zeros((m, 30))

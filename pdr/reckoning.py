@@ -150,7 +150,7 @@ def dead_reckon(
     - the velocity v that is left at the end must be zero: v is taken back linearly in time, which takes
       v T / 2 from the displacement (ZUPT on the velocity only);
     - the same v says how far the attitude was tilted: the mean force over a stride that begins and ends
-      at rest points up, so the tilt error is (v_y, -v_x, 0) / (g T), of which `tilt_gain` is corrected.
+      at rest points up, so the tilt error is (v_y, -v_x, 0) / (g T). Of it `tilt_gain` is corrected.
       The paper bounds tilt with the accelerometers during footfall; there the foot still turns and
       accelerates, which biases that tilt by a degree, while a whole stride is free of it.
     - the vertical component of every correction is zero: heading is the gyro's alone. It is read at

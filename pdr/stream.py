@@ -109,8 +109,9 @@ def _joined(first: Recording, second: Recording) -> Recording:
 class _Reckoner:
     """Where the walk has come to: attitude and position at the reset `carry` of the samples held.
 
-    `made` are the footfalls: time, attitude and position of those of each part. `parts` are the sums over all
-    resets, a part's first of which is the last of the part before, and the footfalls' places among them.
+    `made` are the footfalls: time, attitude and position, part by part. `parts` are the sums over the
+    resets of each part, and the places of the footfalls among them. A part begins with the last reset of the
+    one before.
     """
 
     params: PdrParams

@@ -64,7 +64,7 @@ def write_track(track: Track, path: str | os.PathLike[str]) -> None:
 
 
 def read_track(path: str | os.PathLike[str]) -> Track:
-    """Read a track from Parquet or CSV, anyone's: only t, x, y, z and heading are required.
+    """Read a track from Parquet or CSV, by whatever program: t, x, y, z and heading are required.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A method of anybody's on a scenario, scored in one line."""
+"""Any method on a scenario, scored in one line."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 from footfall.hdr.method import Method
 from footfall.pdr.track import Track
 from footfall.scenarios.execute import Progress, execute
-from footfall.scenarios.judge.gate import unit_of
+from footfall.scenarios.judge.score import unit_of
 from footfall.scenarios.parameters import documents, with_values
 from footfall.scenarios.report.progress import showing
 from footfall.scenarios.report.style import colours_of, label_of

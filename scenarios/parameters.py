@@ -126,6 +126,17 @@ def documents(
 ) -> Documents:
     """The documents of a scenario by its name or file; its own sheet unless told otherwise.
 
+    Parameters
+    ----------
+    imu : data sheet by name or file; None for the scenario's
+    methods : as `footfall.hdr.methods.find_method` takes each
+    without : sensor effects that are switched off
+
+    Returns
+    -------
+    Documents
+        What addresses change (`with_values`), and what a trial is made of (`setup()`).
+
     Raises
     ------
     InputError

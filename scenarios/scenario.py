@@ -282,7 +282,12 @@ def stock_scenarios() -> tuple[str, ...]:
 
 
 def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
-    """A stock scenario by name, or anyone's by the path of its TOML file.
+    """A stock scenario by name, or your own by the path of its TOML file.
+
+    Returns
+    -------
+    Scenario
+        Path, people, gait, temperatures, sensor and seeds; `plan(number)` is what a walk needs.
 
     Raises
     ------
@@ -293,7 +298,7 @@ def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
 
 
 def read_document(name_or_path: str | os.PathLike[str]) -> ScenarioDocument:
-    """What stands in the file of a stock scenario, by name, or in anyone's, by path.
+    """What stands in the file of a stock scenario, by name, or of your own, by path.
 
     Raises
     ------

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from footfall.scenarios.judge.papers import IHDE_TABLE_2
 from footfall.scenarios.report.figures import maps
 from footfall.scenarios.report.heading_figures import evaluation
-from footfall.scenarios.report.style import colours_of, head, label_of, new_panels, save
+from footfall.scenarios.report.style import colours_of, entitle, head, label_of, new_panels, save
 from footfall.scenarios.run import Part, Result, perform_run
 from footfall.scenarios.scenario import Scenario
 from footfall.scenarios.trial import Trial, setup
@@ -48,10 +48,14 @@ def return_errors(errors: Mapping[str, Mapping[str, np.ndarray]]) -> Figure:
         axis.set_yscale("log")
         axis.set_ylim(0.01, 200)
         axis.set_xticks(range(len(_SHOWN)), [label_of(name) for name in _SHOWN])
-        axis.set_title(test, loc="left", fontsize=9)
+        entitle(axis, test)
         axis.yaxis.set_major_formatter("{x:g}")
-    axes[0].set_ylabel("P_err (%)")
-    head(figure, "return errors of the judged walks; the paper's ranges in grey", axes)
+    axes[0].set_ylabel("return error (% of the distance)")
+    head(
+        figure,
+        "Return errors of the judged walks (dots), their median (line) and the paper's range (grey)",
+        axes,
+    )
     return figure
 
 

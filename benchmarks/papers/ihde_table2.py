@@ -101,7 +101,7 @@ class Tuned:
             "the window: W = 8": ihde(window=8),
             "straight: a / k1 = 1 deg": ihde(a=k1 * radians(1)),
             "straight: a / k1 = 3 deg": ihde(a=k1 * radians(3)),
-            "the same, no mean heading": ihde(a=k1 * radians(3), fallback=False),
+            "straight: a / k1 = 3 deg, no mean heading": ihde(a=k1 * radians(3), fallback=False),
             "a direction within 10 deg": ihde(match=radians(10)),
             "a direction within 15 deg": ihde(match=radians(15)),
             "no mean heading": ihde(fallback=False),

@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.validation._real import Real
 from footfall.pdr.track import Track
 from footfall.scenarios.judge.reference import laid_on
-from footfall.scenarios.report.style import head, label_edges, new_panels, save
+from footfall.scenarios.report.style import entitle, head, label_edges, label_of, new_panels, save, widths_of
 
 SHOWN = {"pdr": "#c1440e", "iez": "#1f6fb4", "iez-paper": "#888888"}
 
@@ -33,16 +33,19 @@ def draw(reals: Sequence[Real], tracks: Mapping[tuple[str, str], Track], path: P
         if real.footprints is not None:
             place = real.footprints.position
             axis.plot(*place.T, "o", ms=4.5, mfc="none", mec="#222222", mew=0.8, label="footprints")
+            axis.plot(*place[0], "^", color="#222222", ms=6, ls="", label="start")
+        widths = widths_of(list(SHOWN))
         for name, colour in SHOWN.items():
             if (real.name, name) not in tracks:
                 continue
             place = laid(real, tracks[real.name, name])
-            axis.plot(*place.T, "-", color=colour, lw=1.1, marker=".", ms=3, label=name)
+            axis.plot(*place.T, "-", color=colour, lw=widths[name], label=label_of(name))
             axis.plot(*place[-1], "s", color=colour, ms=5)
         if real.footprints is None:
-            axis.plot(0, 0, "^", color="#222222", ms=7, label="start and end")
-        axis.set_title(real.name, fontsize=9)
+            axis.plot(0, 0, "^", color="#222222", ms=6, ls="", label="start")
+        entitle(axis, real.name)
         axis.set_aspect("equal", adjustable="datalim")
     label_edges(panels, "x (m)", "y (m)")
-    head(figure, "Real feet, default settings; squares: where each track ends", panels)
+    told = "Squares: where each track ends. Without footprints, the walk ended at its start."
+    head(figure, f"Real feet, default settings. {told}", panels)
     save(figure, path)

@@ -1,4 +1,5 @@
-"""A stranger's tour, timed: list, run, walk, record, track, render, and a method of three lines evaluated.
+"""A stranger's tour, timed: list, run, walk, record, track, render, a recording that comes with the package
+navigated, and a method of three lines evaluated.
 
 Everything is as after an installation: no walk is in the cache and no kernel is compiled. Each step is a
 process of its own; what it took by the clock and of the processors is told, beside five minutes in all.
@@ -50,6 +51,9 @@ STEPS = (
     "footfall track rec.parquet --method hdr -o hdr.parquet",
     "footfall score hdr.parquet walk.parquet",
     f"footfall render {SCENARIO} -o walker.webp",
+    "footfall sample",
+    "footfall track walk.csv -o track.parquet",
+    "footfall score track.parquet --footprints footprints.csv",
     "python method.py",
 )
 

@@ -13,7 +13,9 @@ from footfall.models.imu import draw_unit, load_spec
 from footfall.pdr.allan import allan_deviation, suggest_bias_time
 from footfall.scenarios.report.allan import resting_recording
 
-figure, axis = plt.subplots(figsize=(7, 4), layout="constrained")
+plt.style.use("footfall.footfall")
+
+figure, axis = plt.subplots(figsize=(7, 4))
 for name, colour in (("nimu", "#c1440e"), ("mtig710", "#1f6fb4")):
     resting = resting_recording(draw_unit(load_spec(name), seed=1), seconds=1200.0, seed=1, rate_hz=100.0)
     seconds = np.geomspace(0.1, resting.t[-1] / 9, 40)

@@ -12,6 +12,8 @@ import numpy as np
 from footfall.scenarios.parameters import documents
 from footfall.scenarios.trial import Trial, perform, walk_of
 
+plt.style.use("footfall.footfall")
+
 setup = documents("block", methods=["pdr"]).setup()
 trial = Trial(setup, number=0, walk_seed=1, unit_seed=7, noise_seed=7)
 budget = perform(trial, walk_of(trial), keep=True).kept.budget
@@ -28,7 +30,7 @@ def along_the_walk(drift):
 turned = {name: along_the_walk(drift) for name, drift in budget.causes.items()}
 largest = sorted(turned, key=lambda name: -np.abs(turned[name]).max())[:5]
 
-figure, axis = plt.subplots(figsize=(7, 4), layout="constrained")
+figure, axis = plt.subplots(figsize=(7, 4))
 for name in largest:
     axis.plot(budget.t, turned[name], label=name.replace("_", " "))
 axis.plot(budget.t, along_the_walk(budget.total), color="#222222", linewidth=2, label="all")

@@ -12,6 +12,8 @@ import numpy as np
 import footfall
 from footfall.hdr.correct import turned_positions
 
+plt.style.use("footfall.footfall")
+
 
 def comes_back(footfalls, start):
     """The heading, less what it gained beyond the three corners of the block."""
@@ -31,7 +33,7 @@ print(rows)
 # %%
 # One point a unit: below the line the method did better than no correction.
 
-figure, axis = plt.subplots(figsize=(5.5, 5), layout="constrained")
+figure, axis = plt.subplots(figsize=(5.5, 5))
 bare = rows.of("pdr").values("heading_error_mean_deg")
 for method, colour in (("hdr", "#1f6fb4"), ("comes_back", "#6a9f3a")):
     axis.plot(bare, rows.of(method).values("heading_error_mean_deg"), "o", color=colour, label=method)

@@ -12,6 +12,8 @@ import numpy as np
 from footfall.pdr.reckoning import PdrParams, detect
 from footfall.pdr.synthetic import walk
 
+plt.style.use("footfall.footfall")
+
 foot = walk(np.zeros(40))  # the headings of 40 footfalls: straight ahead
 recording = foot.recording(angle_random_walk=np.radians(0.1) / 60, seed=1)
 found = detect(recording, PdrParams())
@@ -21,7 +23,7 @@ found = detect(recording, PdrParams())
 
 resets = recording.t[found.stances.resets]
 rate = np.degrees(np.linalg.norm(recording.gyro, axis=1))
-figure, (above, below) = plt.subplots(2, figsize=(7, 4.5), sharex=True, layout="constrained")
+figure, (above, below) = plt.subplots(2, figsize=(7, 4.5), sharex=True)
 above.plot(recording.t, rate, color="#444f9b")
 above.set(ylabel="rate of the foot (deg/s)")
 below.semilogy(recording.t, found.score, color="#444f9b")

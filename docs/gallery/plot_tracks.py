@@ -13,6 +13,8 @@ from footfall.scenarios.parameters import documents
 from footfall.scenarios.report.style import colours_of, label_of
 from footfall.scenarios.trial import Trial, perform, walk_of
 
+plt.style.use("footfall.footfall")
+
 METHODS = ["pdr", "hdr", "ihde"]
 
 # %%
@@ -28,7 +30,7 @@ for row in outcome.rows:
 # %%
 # Tracks and truth are compared in the world's coordinates; nothing is fitted.
 
-figure, axis = plt.subplots(figsize=(7, 5), layout="constrained")
+figure, axis = plt.subplots(figsize=(7, 5))
 for method, colour in colours_of(METHODS).items():
     beside = compare(outcome.kept.tracks[method], walk)
     axis.plot(*beside.estimate.T, color=colour, label=label_of(method))

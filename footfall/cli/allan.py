@@ -51,7 +51,7 @@ def allan(
         require_output(figure, ".png")
     if sheet is not None:
         if recording is None:
-            raise InputError("--sheet: expected a recording at rest, of which the sheet is made")
+            raise InputError("--sheet: expected a recording at rest, to make the sheet from")
         require_output(sheet, ".toml", recording)
     if recording is not None:
         sizes = parse_units(unit or ())

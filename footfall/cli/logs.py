@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import logging
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,7 @@ def start_log(verbose: bool, file: Path | None) -> Callable[[], None]:
     log = logging.getLogger("footfall")
     if handlers:
         log.setLevel(logging.INFO)
+    began = time.monotonic()
     for handler in handlers:
         handler.setFormatter(logging.Formatter(_LAYOUT))
         log.addHandler(handler)
@@ -58,6 +60,7 @@ def start_log(verbose: bool, file: Path | None) -> Callable[[], None]:
         # It is printed later, when this log has ended; without a log, logging itself would print it too.
         if handlers and isinstance(error := sys.exc_info()[1], InputError):
             logging.getLogger(SAID).error("%s", error)
+        log.info("ended after %.1f s", time.monotonic() - began)
         for handler in handlers:
             log.removeHandler(handler)
             handler.close()

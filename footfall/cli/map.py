@@ -31,7 +31,9 @@ def map_(
     ] = None,
     y_range: Annotated[
         str | None,
-        typer.Option("--y", metavar="FROM..TO", help="The same for METHOD.B.", show_default=False),
+        typer.Option(
+            "--y", metavar="FROM..TO", help="Range of METHOD.B. Default: as for --x.", show_default=False
+        ),
     ] = None,
     steps: Annotated[int, typer.Option(min=2, max=200, help="Number of values of each parameter.")] = 32,
     walks: Annotated[

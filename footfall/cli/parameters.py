@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
 import math
+from collections.abc import Iterable
 from typing import Annotated
 
 import typer
@@ -42,13 +44,12 @@ def parameters(
     from footfall.scenarios.parameters import STAGES, documents
     from footfall.scenarios.parameters import parameters as listed
     from footfall.scenarios.report.tables import new_table
-    from footfall.settings import did_you_mean
 
     chosen = list(METHODS) if methods is None else methods.split(",")
     every = list(listed(documents(scenario, imu=imu, methods=chosen)))
     found = [one for one in every if word is None or word.lower() in one.address.lower()]
     if not found:
-        raise InputError(f"no address contains {word!r}{did_you_mean(str(word), [p.address for p in every])}")
+        raise InputError(f"no address contains {word!r}{_meant(str(word), [one.address for one in every])}")
     if as_json:
         print_json({one.address: {**one._asdict(), "default": _plain(one.default)} for one in found})
         return
@@ -59,6 +60,13 @@ def parameters(
         table.add_row(one.address, value, ", ".join(filter(None, (one.type, one.bounds))), one.stage)
     OUT.print(table)
     OUT.print("[dim]repeats: the first stage that a new value changes: " + ", ".join(STAGES) + "[/dim]")
+
+
+def _meant(word: str, addresses: Iterable[str]) -> str:
+    """The end of a message about a word that is in no address: the names most like it."""
+    parts = dict.fromkeys(part for address in addresses for part in address.split("."))
+    near = difflib.get_close_matches(word, parts, n=2)
+    return f"; did you mean {' or '.join(near)}?" if near else "; `footfall parameters` lists them all"
 
 
 def _plain(value: object) -> object:

@@ -17,8 +17,11 @@ from footfall.cli.options import (
     UnitOption,
     WithoutOption,
 )
+from footfall.cli.reading import require_kind
 from footfall.cli.terminal import ERR, TABLES, finite, require_output, say
 from footfall.errors import InputError
+
+_TO_RECORDINGS = " (to add an IMU's errors to a recording: `footfall record --from-recording`)"
 
 
 def record(
@@ -77,7 +80,7 @@ def record(
     from footfall.formats import parse_units, read
     from footfall.models.imu import TemperatureProfile, draw_unit
     from footfall.models.imu.override import overridden
-    from footfall.recording import refuse_recording, write_recording
+    from footfall.recording import write_recording
     from footfall.scenarios.parameters import parsed, sensor
     from footfall.simulate.from_recording import add_errors
     from footfall.simulate.record import record as record_walk
@@ -100,7 +103,7 @@ def record(
     air = TemperatureProfile.step(indoors, outdoors)
     with ERR.status("recording"):
         if walk is not None:
-            refuse_recording(walk)
+            require_kind(walk, "walk", _TO_RECORDINGS)
             recording = record_walk(
                 read_walk(walk),
                 worn,

@@ -14,7 +14,9 @@ from footfall.cli.terminal import ERR, finite, require_output, say
 def render(
     scenario: ScenarioArgument,
     output: Annotated[Path, typer.Option("--output", "-o", help="WebP or PNG file to write.")],
-    number: Annotated[int, typer.Option(min=1, help="Which of the scenario's walks, and so whose.")] = 1,
+    number: Annotated[
+        int, typer.Option(min=1, help="Which of the scenario's walks. It decides the person who walks.")
+    ] = 1,
     skip: Annotated[
         float, typer.Option(min=0, help="Start of the picture, s after the first step.", callback=finite)
     ] = 4.0,

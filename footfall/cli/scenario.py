@@ -48,7 +48,8 @@ def from_(
 ) -> None:
     """Fit straights, arcs and corners to points, and write the scenario of a walk along them.
 
-    The path is level. Pace, temperatures, sensor and seeds are common ones: change them in the file.
+    The path is level, whatever heights the points have. Pace, temperatures, sensor and seeds are common ones:
+    change them in the file.
     """
     from footfall.scenarios.report.path_map import draw_path
     from footfall.scenarios.waypoints.scenario import told, trace, write_scenario

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from footfall.cli.options import JsonOption
+from footfall.cli.reading import require_kind
 from footfall.cli.terminal import OUT, blaming, print_json
 from footfall.errors import InputError
 
@@ -59,6 +60,7 @@ def score(
             "--align: is for a walk; footprints are always fitted, and a closed walk needs no fit"
         )
     prints = None if footprints is None else read_footprints(footprints)
+    require_kind(track, "track")
     estimate = read_track(track)
     with blaming(track, "track"):
         result = score_closure(estimate) if prints is None else score_footprints(estimate, prints)
@@ -70,14 +72,14 @@ def score(
 
 def _beside_walk(track: Path, walk: Path, align: str, as_json: bool) -> None:
     from footfall.pdr.track import read_track
-    from footfall.recording import refuse_recording
     from footfall.scenarios.judge.score import require_align
     from footfall.scenarios.judge.score import score as judge
     from footfall.scenarios.report.tables import score_table
     from footfall.simulate.walk import read_walk
 
     fitted = require_align(align)
-    refuse_recording(walk)
+    require_kind(track, "track")
+    require_kind(walk, "walk")
     estimate, truth = read_track(track), read_walk(walk)
     with blaming(track, "track"):
         result = judge(estimate, truth, fitted)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import signal
 import time
 from collections.abc import Iterator
@@ -21,8 +22,9 @@ if TYPE_CHECKING:
     from footfall.scenarios.studies.study import Study
     from footfall.scenarios.studies.sweep import Progress
 
+LOG = logging.getLogger(__name__)
 REASONS = 12  # that are printed
-_EVERY_S = 30.0  # a line where there is no terminal
+_EVERY_S = 30.0  # a line, in the log alone where a bar is shown
 
 
 def sweep(
@@ -138,6 +140,7 @@ def _sweep(
     with _stopping() as asked, _showing(study.name) as show:
         keys = {"fresh": fresh, "retry_failed": retry, "command": command, "on_progress": show}
         *_, now = perform(made, folder, crew, stop=lambda: bool(asked), **keys)
+        show(now)
     for warning in now.warnings:
         say(f"{folder}: {warning}")
     if now.stage == "stopped":
@@ -150,7 +153,7 @@ def _report(study: Study, folder: Path, command: str, seconds: float, *, as_json
     """Say what came of it, and refuse what came to nothing."""
     from footfall.scenarios.studies.describe import duration, failures
 
-    rows = study.results(folder)
+    rows = study.results(folder).table
     reasons = failures(rows)
     lost = sum(count for count, _ in reasons)
     if as_json:
@@ -215,9 +218,11 @@ def _showing(name: str) -> Iterator[Any]:
             nonlocal last
             told = _told(now, time.monotonic() - start)
             bars.update(bar, completed=now.share, description=now.stage, told=told)
-            if not ERR.is_terminal and time.monotonic() - last >= _EVERY_S:
+            over = now.stage in ("finished", "stopped")
+            if over or time.monotonic() - last >= _EVERY_S:
                 last = time.monotonic()
-                say(f"{name}: {now.share:.0%}, {now.stage}, {told}")
+                tell = LOG.info if over or ERR.is_terminal else say
+                tell(f"{name}: {now.share:.0%}, {now.stage}, {told}")
 
         yield show
 

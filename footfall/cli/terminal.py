@@ -17,7 +17,7 @@ import typer
 from rich.console import Console
 
 from footfall.cli.logs import SAID
-from footfall.errors import InputError
+from footfall.errors import InputError, reworded
 
 OUT = Console()
 ERR = Console(stderr=True)
@@ -121,7 +121,7 @@ def perform(app: typer.Typer, arguments: list[str] | None) -> int:
     except _USAGE_ERROR as error:
         command = getattr(getattr(error, "ctx", None), "command_path", "footfall")
         given = _given(error, sys.argv[1:] if arguments is None else arguments)
-        told = error.format_message().rstrip(".")  # type: ignore[attr-defined]
+        told = reworded(error.format_message().rstrip("."))  # type: ignore[attr-defined]
         return _refuse(f"{told}{given} (see `{command} --help`)")
     if code == INTERRUPTED:
         print("footfall: interrupted", file=sys.stderr)

@@ -8,7 +8,7 @@ from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from footfall.scenarios.judge.score import Score
+from footfall.scenarios.judge.score import Score, unit_of
 from footfall.settings import did_you_mean
 from footfall.toml import Strict
 
@@ -17,13 +17,7 @@ DEFAULT_METRIC = "heading_error_mean_deg"
 QUANTILES = {"median": 0.5, "p75": 0.75, "p90": 0.9, "p95": 0.95}
 STATISTICS = (*QUANTILES, "share_below", "same")
 
-_UNITS = {"_deg": "deg", "_m": "m", "_pct": "%"}
 _FLOORS = {"deg": 0.01, "m": 0.01, "%": 0.001}
-
-
-def unit_of(metric: str) -> str:
-    """Of a score, by its name."""
-    return next(unit for ending, unit in _UNITS.items() if metric.endswith(ending))
 
 
 def floor_of(metric: str) -> float:

@@ -1,6 +1,6 @@
 """How far a track is off the truth.
 
-Nothing is fitted: the track is compared as it is, in the world's coordinates. A track whose start nobody knew
+Nothing is fitted: the track is compared as it is, in the world's coordinates. A track of an unknown start
 can be aligned first, by an option that says how much is fitted. Errors are estimate - truth; positions and
 distances are horizontal.
 """
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Any, Literal, Protocol, cast, get_args
 
 import numpy as np
@@ -19,16 +19,19 @@ from footfall.errors import InputError
 from footfall.identity import WalkIdentity
 from footfall.pdr.track import Track
 from footfall.scenarios.judge.rigid import RigidMotion, rigid_fit, turn_between
+from footfall.shown import Shown
 from footfall.simulate.walk import TrueFootfalls, Walk
 
 TIME_SLACK = 0.1  # s; an IMU's clock may run off by this much over a walk
 UNCOVERED = 5.0  # s; a track that leaves out more of the walk's start or end is not judged
 
+_UNITS = {"_deg": "deg", "_pct": "%", "_m": "m"}  # by the end of a figure's name
+
 Align = Literal["none", "start", "yaw", "rigid"]
 
 
 @dataclass(frozen=True)
-class Score:
+class Score(Shown):
     """Errors of one track, or means over several.
 
     Attributes
@@ -52,6 +55,32 @@ class Score:
     def as_dict(self) -> dict[str, float]:
         """Plain numbers by name, for JSON."""
         return asdict(self)
+
+    def _columns(self) -> dict[str, list[float]]:
+        return {name: [value] for name, value in self.as_dict().items()}
+
+    def _units(self) -> dict[str, str]:
+        return {item.name: unit_of(item.name) for item in fields(self)}
+
+    def _draw(self) -> np.ndarray:
+        """A panel for each unit, a bar for each figure."""
+        from matplotlib import pyplot
+
+        units = list(_UNITS.values())
+        _, axes = pyplot.subplots(1, len(units), figsize=(9, 1.6))
+        for axis, unit in zip(axes, units, strict=True):
+            names = [name for name, own in self._units().items() if own == unit]
+            words = [name.rpartition("_")[0].replace("_", " ") for name in names]
+            axis.barh(words, [getattr(self, name) for name in names], color="#1f6fb4", height=0.6)
+            axis.axvline(0, color="#222222", lw=0.8)
+            axis.invert_yaxis()
+            axis.set_xlabel(unit)
+        return np.asarray(axes)
+
+
+def unit_of(score: str) -> str:
+    """Of a figure of `Score`, by its name."""
+    return next(unit for ending, unit in _UNITS.items() if score.endswith(ending))
 
 
 @dataclass(frozen=True)
@@ -110,6 +139,11 @@ def compare(track: Track, walk: Poses, align: Align = "none") -> Comparison:
         "yaw": the position of row 0 becomes the truth's and the turn is that of least squares over all rows;
         "rigid": shift and turn of least squares over all rows (evo: `align`; Umeyama 1991, without scale)
 
+    Returns
+    -------
+    Comparison
+        One row a row of the track: times, both positions (m), the true heading and its error (rad).
+
     Raises
     ------
     InputError
@@ -149,6 +183,11 @@ def score(track: Track, walk: Walk, align: Align = "none") -> Score:
     Parameters
     ----------
     align : as of `compare`
+
+    Returns
+    -------
+    Score
+        Six figures: heading (deg), return and distance error (%), position (m).
 
     Raises
     ------

@@ -25,7 +25,8 @@ from footfall.scenarios.judge.bounds import (
     quantile_bounds,
     share_bounds,
 )
-from footfall.scenarios.judge.gate import Gate, floor_of, unit_of
+from footfall.scenarios.judge.gate import Gate, floor_of
+from footfall.scenarios.judge.score import unit_of
 
 Decision = Literal["pass", "fail", "undecided"]
 Scores = Mapping[str, np.ndarray]  # metric -> (n,) magnitudes, one a case; infinite where the method failed

@@ -76,14 +76,12 @@ def _draw(recording: Recording, bias_time: float, white: float, path: Path) -> N
     longest = (recording.t[-1] - recording.t[0]) / 5
     tau = np.geomspace(10 * interval, longest, 40)
     deviation = np.degrees(allan_deviation(recording.gyro, interval, tau)) * 3600
-    figure, (axis,) = new_panels(1, 6.0, 3.6)
+    figure, (axis,) = new_panels(1, 7.0, 3.8)
     for i, (name, colour) in enumerate(AXES.items()):
         axis.loglog(tau, deviation[:, i], color=colour, lw=1.4, label=f"gyro {name}")
     noise = np.degrees(white / np.sqrt(tau)) * 3600
     axis.loglog(tau, noise, "--", color="#888888", lw=1, label="white noise alone")
-    axis.axvline(
-        bias_time, color="#222222", lw=0.9, label=f"suggested $T_{{bias}}$ = {bias_time:.0f} s at rest"
-    )
+    axis.axvline(bias_time, color="#222222", lw=0.9, label=f"$T_{{bias}}$ = {bias_time:.0f} s")
     label_edges([axis], "averaging time (s)", "Allan deviation (deg/h)")
-    head(figure, "Allan deviation of the gyros at rest", [axis])
+    head(figure, "Allan deviation of the gyros at rest, and how long they should rest (T_bias)", [axis])
     save(figure, path)

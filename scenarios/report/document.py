@@ -14,7 +14,7 @@ from footfall.simulate.plan import versions
 if TYPE_CHECKING:
     from footfall.scenarios.run import Result
 
-ERRORS = ("heading_error_final_deg", "heading_error_mean_deg")
+ERRORS = ("heading_error_mean_deg", "heading_error_final_deg")
 
 
 def scores_by_method(rows: Sequence[Mapping[str, Score]]) -> dict[str, list[Score]]:

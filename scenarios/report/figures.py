@@ -184,7 +184,7 @@ def filtered_rates(results: Sequence[Result], method: str = "hdr", count: int = 
     )
     # What HDR judges is small beside the swaying that the filters take away: it has a scale of its own.
     for axis, chosen, name in zip(
-        axes, (lines, lines[-1:]), ("all of them", "twice filtered, which HDR judges"), strict=True
+        axes, (lines, lines[-1:]), ("all three", "the twice filtered alone, which HDR judges"), strict=True
     ):
         for key, label, colour, width in chosen:
             axis.plot(number, np.degrees(evidence[key][number]), color=colour, lw=width, label=label)

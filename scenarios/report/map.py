@@ -10,7 +10,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from footfall.late import late
-from footfall.scenarios.judge.gate import unit_of
+from footfall.scenarios.judge.score import unit_of
 from footfall.scenarios.parameters import Documents
 from footfall.scenarios.report.sensitivity import WORDS, finite_or_none
 from footfall.scenarios.report.sensitivity_figures import short

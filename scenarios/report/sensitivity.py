@@ -13,7 +13,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from footfall.late import late
-from footfall.scenarios.judge.gate import unit_of
+from footfall.scenarios.judge.score import unit_of
 from footfall.scenarios.judge.verdict import figure
 from footfall.scenarios.report.style import label_of
 from footfall.scenarios.report.tables import new_table, titled

@@ -9,16 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from footfall.scenarios.judge.gate import unit_of
+from footfall.scenarios.judge.score import unit_of
 from footfall.scenarios.report.sensitivity import asked, ranked
 from footfall.scenarios.report.style import (
     MORE,
     colours_of,
     entitle,
+    head,
     label_edges,
     label_of,
     new_figure,
     new_panels,
+    plain_log,
     save,
 )
 from footfall.scenarios.studies.factors import Factor
@@ -26,7 +28,6 @@ from footfall.scenarios.studies.sensitivity import Answer, Found
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
 
 FIRST, TOTAL = "#1f6fb4", "#a9cbe6"
 _WHISKER: Any = {"color": "#222222", "elinewidth": 1.0, "capsize": 2.5, "fmt": "none"}
@@ -67,14 +68,10 @@ def draw_indices(found: Found, path: Path) -> None:
     ends = [axis.get_xlim() for axis in bars]
     for axis in bars:  # so that methods can be compared
         axis.set_xlim(min(low for low, _ in ends), max(high for _, high in ends))
-    bars[0].legend(loc="lower right", frameon=False, fontsize=8)
     for place, (axis, one) in enumerate(zip(ways, found.answers, strict=bool(ways))):
         _converge(axis, one, order, found)
         axis.set_ylabel("total index" if place % columns == 0 else "")
-    if ways:
-        handles, labels = ways[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower right", ncols=3, frameon=False, fontsize=7)
-    figure.suptitle(_title(found), x=0.01, ha="left", fontsize=10)
+    head(figure, _title(found), [*bars, *ways])
     save(figure, path)
 
 
@@ -134,12 +131,9 @@ def draw_effects(found: Found, path: Path) -> None:
     axes[0].set_yscale("log")
     plain_log(axes[0].yaxis)
     label_edges(axes, "", f"error ({unit_of(found.study.file.metric)})")
-    if not single:
-        handles, labels = axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower right", ncols=6, frameon=False, fontsize=8)
     what = "Median and 10th to 90th percentile" if single else "Median"
     title = f"{_title(found)}\n{what} over all other parameters; dotted: with none of them changed"
-    figure.suptitle(title, x=0.01, ha="left", fontsize=9)
+    head(figure, title, [] if single else axes)
     save(figure, path)
 
 
@@ -168,15 +162,6 @@ def _effect(
 def short(value: float) -> str:
     """Two digits, without an exponent where that is not shorter."""
     return f"{float(f'{value:.2g}'):g}"
-
-
-def plain_log(axis: Axis) -> None:
-    """Plain numbers at 1, 2 and 5 of each decade of an x or y axis that is logarithmic."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(NullFormatter())
 
 
 def _wrapped(factor: Factor, width: int = _WIDE, *, unit: bool = False) -> str:

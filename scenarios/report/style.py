@@ -14,6 +14,7 @@ from footfall.tables import replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 TRUTH = "#222222"
@@ -35,6 +36,7 @@ _LABELS = {
     "hde": "HDE",
     "ihde": "IHDE",
     "ihde-plus": "IHDE+",
+    "iez-paper": "IEZ as in the paper",
 }
 
 
@@ -87,14 +89,14 @@ def head(figure: Figure, title: str, axes: Sequence[Axes]) -> None:
         for handle, label in zip(*axis.get_legend_handles_labels(), strict=True):
             entries.setdefault(label, handle)
     width = figure.get_figwidth()
-    columns = max(1, min(len(entries), int(width / 1.3)))
+    columns = _legend_columns(list(entries), width)
     ordered = list(entries.items())
     # Matplotlib fills column after column; people read row after row.
     ordered = [ordered[i] for column in range(columns) for i in range(column, len(ordered), columns)]
     figure.legend(
         [handle for _, handle in ordered],
         [label for label, _ in ordered],
-        title=textwrap.fill(title, int(13 * width)),
+        title="\n".join(textwrap.fill(line, int(13 * width)) for line in title.splitlines()),
         loc="outside upper left",
         ncols=columns,
         alignment="left",
@@ -104,15 +106,34 @@ def head(figure: Figure, title: str, axes: Sequence[Axes]) -> None:
     )
 
 
+def _legend_columns(labels: Sequence[str], width: float) -> int:
+    """As many columns as labels, row after row, have room for in `width` inches."""
+    for columns in range(len(labels), 1, -1):
+        longest = (max(map(len, labels[column::columns])) for column in range(columns))
+        if sum(0.55 + 0.063 * letters for letters in longest) <= width:
+            return columns
+    return 1
+
+
 def save(figure: Figure, path: Path) -> None:
     """Write as PNG."""
     with replacing(path) as temporary:
         figure.savefig(temporary, format="png", dpi=160)
 
 
+def plain_log(axis: Axis) -> None:
+    """Plain numbers at 1, 2 and 5 of each decade of an x or y axis that is logarithmic."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
 def colours_of(methods: Sequence[str]) -> dict[str, str]:
     """A colour for each of up to ten methods, the same in every figure of a run; usual ones keep theirs."""
-    palette = list(dict.fromkeys((*COLOURS.values(), *MORE)))
+    # Colours that are no method's own come first, so that red stays what is uncorrected.
+    palette = [*(one for one in MORE if one not in COLOURS.values()), *dict.fromkeys(COLOURS.values())]
     found: dict[str, str] = {}
     for method in sorted(methods, key=lambda name: name not in COLOURS):
         usual = COLOURS.get(method)

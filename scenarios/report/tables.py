@@ -72,7 +72,7 @@ def titled(title: str, table: Table) -> Group:
 
 
 def heading_table(results: Sequence[Result]) -> Group:
-    """The HDR paper's Table 2 for these walks: final and average heading error, and improvement."""
+    """The HDR paper's Table 2 for these walks: average and final heading error, and improvement."""
     rows = [result.scores for result in results]
     means = {name: mean_score(scores) for name, scores in scores_by_method(rows).items()}
     labels = ["pdr\n(uncorrected)" if name == "pdr" else name for name in means]
@@ -83,7 +83,7 @@ def heading_table(results: Sequence[Result]) -> Group:
         table.add_row(walk, unit, *cells, style="bold" if walk == "mean" else None)
     compared = "pdr" in means and len(means) > 1
     gain = "; 3.0x: so many times smaller than uncorrected" if compared else ""
-    return titled(f"Heading error, final / average (deg){gain}", table)
+    return titled(f"Heading error, average / final (deg){gain}", table)
 
 
 def paper_table() -> Group:
@@ -93,9 +93,9 @@ def paper_table() -> Group:
         mean = row is HDR_TABLE_2_MEAN
         table.add_row(
             "mean" if mean else row.name.removeprefix("Walk "),
-            f"{row.uncorrected.final:g} / {row.uncorrected.average:g}",
-            f"{row.hdr.final:g} / {row.hdr.average:g}\n"
-            f"{row.improvement.final:g}x / {row.improvement.average:g}x",
+            f"{row.uncorrected.average:g} / {row.uncorrected.final:g}",
+            f"{row.hdr.average:g} / {row.hdr.final:g}\n"
+            f"{row.improvement.average:g}x / {row.improvement.final:g}x",
             style="bold" if mean else None,
         )
     return titled("The paper's own walks: Borenstein et al. (2008), Table 2", table)
@@ -129,7 +129,7 @@ def noises_table(results: Sequence[Result]) -> Group | None:
     if not means:
         return None
     table = new_table(
-        "walk", "", "final\nmedian", "smallest\nto largest", "average\nmedian", "smallest\nto largest", left=2
+        "walk", "", "average\nmedian", "smallest\nto largest", "final\nmedian", "smallest\nto largest", left=2
     )
     walks = [(str(result.trial.number + 1), result.noises) for result in results]
     for walk, rows in [*walks, ("mean", means)]:
@@ -147,7 +147,7 @@ def others_table(results: Sequence[Result]) -> Group | None:
     if not others:
         return None
     count = len(next(iter(others.values())))
-    columns = [f"{error}\n{column}" for error in ("final", "average") for column in ("mean", "median", "p90")]
+    columns = [f"{error}\n{column}" for error in ("average", "final") for column in ("mean", "median", "p90")]
     table = new_table("", *columns)
     for name, scores in others.items():
         cells = []
@@ -232,7 +232,7 @@ def reference_table(score: FootprintScore | ClosureScore) -> Group:
 
 
 def _pair(score: Score) -> str:
-    return f"{score.heading_error_final_deg:.1f} / {score.heading_error_mean_deg:.1f}"
+    return f"{score.heading_error_mean_deg:.1f} / {score.heading_error_final_deg:.1f}"
 
 
 def _gain(row: Mapping[str, Score], name: str) -> str:
@@ -240,10 +240,10 @@ def _gain(row: Mapping[str, Score], name: str) -> str:
     if name == "pdr" or "pdr" not in row:
         return ""
     factor = improvement(row["pdr"], row[name])
-    pair = factor.final, factor.mean
+    pair = factor.mean, factor.final
     worse = [ratio < 0.95 for ratio in pair]  # what rounds to 1.0 is no worse
-    final, mean = (f"{1 / ratio if ratio and ratio < 0.95 else ratio:.1f}x" for ratio in pair)
+    mean, final = (f"{1 / ratio if ratio and ratio < 0.95 else ratio:.1f}x" for ratio in pair)
     if worse[0] == worse[1]:
-        return f"\n{final} / {mean}{' worse' if worse[0] else ''}"
+        return f"\n{mean} / {final}{' worse' if worse[0] else ''}"
     words = ["worse" if bad else "better" for bad in worse]
-    return f"\n{final} {words[0]} / {mean} {words[1]}"
+    return f"\n{mean} {words[0]} / {final} {words[1]}"

@@ -11,12 +11,11 @@ import numpy as np
 from rich.console import RenderableType
 from rich.text import Text
 
-from footfall.scenarios.judge.gate import unit_of
+from footfall.scenarios.judge.score import unit_of
 from footfall.scenarios.judge.statistics import spread
 from footfall.scenarios.judge.verdict import figure
 from footfall.scenarios.report.sensitivity import WORDS, finite_or_none
-from footfall.scenarios.report.sensitivity_figures import plain_log
-from footfall.scenarios.report.style import entitle, label_of, new_panels, save
+from footfall.scenarios.report.style import entitle, label_of, new_panels, plain_log, save
 from footfall.scenarios.report.tables import new_table, titled
 from footfall.scenarios.studies.tuning import Tuned
 from footfall.simulate.plan import versions

@@ -138,7 +138,7 @@ class Surrogate:
     Raises
     ------
     InputError
-        A method, address or metric of which the budget knows nothing, and why.
+        A method, address or metric that the budget cannot follow, and why.
     """
 
     def __init__(

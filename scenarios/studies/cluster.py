@@ -1,9 +1,8 @@
 """Work on a Dask cluster that is there already: walks are futures, and this process alone keeps what is made.
 
-A walk is a task; the scheduler moves its result to whoever needs it, and one copy goes into the cache here.
-Dask does again what a worker that died had in the making. What this process sees to itself: that workers are
-of its versions and code, that nobody waits for ever, and that a task that ends its worker costs no other its
-rows.
+A walk is a task; the scheduler moves its result to the workers that need it, and one copy goes into the cache
+here. Dask does again what a worker that died had in the making. This process sees to the rest: workers have
+its versions and code, no wait is for ever, and a task that ends its worker costs no other its rows.
 """
 
 from __future__ import annotations
@@ -32,9 +31,9 @@ from footfall.simulate.walk import Walk
 PATIENCE_S = 600.0  # without any result, after which it stops
 _ALONE_S = 60.0  # without a worker, after which it is said, again and again
 _CONNECT_S = 10.0
-_LOOK_S = 2.0  # between looks at who is there
+_LOOK_S = 2.0  # between looks at which workers are there
 _TICK_S = 0.2
-_AHEAD = 2  # tasks a worker: nobody waits for the next one
+_AHEAD = 2  # tasks a worker, so that none waits for the next one
 _ENDED = InputError("its worker process was ended: killed, or out of memory")
 
 P = TypeVar("P")

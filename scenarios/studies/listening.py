@@ -79,7 +79,7 @@ def heard(trials: Sequence[Trial], walk: Walk) -> list[Case | Lost]:
 
 
 class Heard:
-    """The surrogate over cases some of which came to no end: those have infinite errors.
+    """The surrogate over cases. Those that came to no end have infinite errors.
 
     Parameters
     ----------

@@ -130,9 +130,9 @@ class _Pool:
         return self._warm < 0
 
     def _work(self, pool: ProcessPoolExecutor, workers: int, metres: Any, *, alone: bool) -> Iterator[Done]:
-        """Until nothing is left, whoever asked stops it, or a worker ends. Suspects go one by one."""
+        """Until nothing is left, it is asked to stop, or a worker ends. Suspects go one by one."""
         running: dict[Future[Any], Job[Task]] = {}
-        ahead = 1 if alone else workers + 1  # so that nobody waits for the next one
+        ahead = 1 if alone else workers + 1  # so that no worker waits for the next one
         while True:
             broken = False
             while len(running) < ahead and not self._stop() and (self._suspects if alone else self._queue):

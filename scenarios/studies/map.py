@@ -101,6 +101,15 @@ def error_map(
 ) -> ErrorMap:
     """The error of the one method of `base` at steps x steps pairs.
 
+    Parameters
+    ----------
+    x, y : what is varied, and its range
+    cases : walks and units
+    metric, over : which score, and its median, mean or p90 over the cases
+    steps : values of each
+    workers : processes; None for one a core
+    on_cases, on_trials : called with what is done
+
     Raises
     ------
     InputError

@@ -45,12 +45,12 @@ class StudyFolder:
 
     @contextmanager
     def alone(self) -> Iterator[None]:
-        """Nobody else works in this folder meanwhile; the system frees what a killed process held.
+        """No other process works in this folder meanwhile; the system frees what a killed one held.
 
         Raises
         ------
         InputError
-            Somebody does; or the folder cannot be made or written.
+            Another one does; or the folder cannot be made or written.
         """
         from filelock import FileLock, Timeout
 

@@ -75,7 +75,7 @@ def require_over(name: str) -> Over:
 
 
 def require_allowed(base: Documents, factors: Sequence[Factor]) -> None:
-    """Refuse a factor whose address is unknown, or one end of which the models refuse.
+    """Refuse a factor whose address is unknown, or that has an end which the models refuse.
 
     Raises
     ------

@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 from footfall.errors import InputError
 from footfall.late import late
-from footfall.scenarios.judge.score import Score
+from footfall.scenarios.judge.score import Score, unit_of
 from footfall.scenarios.trial import Row
 from footfall.tables import META_KEY, UNITS_KEY, replacing
 
@@ -29,7 +29,6 @@ SCORES = tuple(item.name for item in fields(Score))
 AFTER = ("footfalls", "stage", "error", "walk_sha", "recording_sha", "key")
 
 _INTEGERS = {"number", "walk_seed", "unit_seed", "noise_seed", "footfalls"}
-_UNITS = {"_deg": "deg", "_pct": "%", "_m": "m"}
 _FIRST = ("scenario", "number", "walk_seed", "imu")  # that rows are sorted by, before the axes
 _LAST = ("unit_seed", "noise_seed", "method")  # and after them
 
@@ -79,7 +78,7 @@ def schema(axes: Mapping[str, Kind] | None = None) -> Any:
         columns.append((axis, types[kind]))
     columns += [(name, pa.float64()) for name in SCORES]
     columns += [(name, _type(name)) for name in AFTER]
-    units = {name: _unit(name) for name in SCORES}
+    units = {name: unit_of(name) for name in SCORES}
     told = {UNITS_KEY: json.dumps(units), META_KEY: json.dumps({"format": FORMAT, "axes": list(axes or {})})}
     return pa.schema(columns, metadata=told)
 
@@ -162,7 +161,3 @@ def axes_of(rows: Any) -> tuple[str, ...]:
 
 def _type(name: str) -> Any:
     return pa.int64() if name in _INTEGERS else pa.string()
-
-
-def _unit(name: str) -> str:
-    return next((unit for ending, unit in _UNITS.items() if name.endswith(ending)), "")

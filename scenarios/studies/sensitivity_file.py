@@ -1,4 +1,4 @@
-"""The file of a sensitivity study: what is varied, of which methods' error, over which cases."""
+"""The file of a sensitivity study: what is varied, for the errors of which methods, over which cases."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from footfall.errors import InputError
 from footfall.scenarios.parameters import Documents, documents, parameters, with_values
 from footfall.scenarios.studies.factors import Factor, FactorTable, factors_of, points_at
 from footfall.scenarios.studies.points import Over, Worn, require_allowed, require_metric
-from footfall.toml import Strict, checked, parse_toml
+from footfall.toml import Strict, checked, no_such_file, parse_toml
 
 FOLDER = Path(__file__).resolve().parent / "stock" / "sensitivity"  # of the studies that come with Footfall
 UNIT = "unit"  # the factor that is the unit itself
@@ -110,7 +110,7 @@ def stock_studies() -> dict[str, Path]:
 
 
 def read_study(name_or_path: str, changes: Mapping[str, Any] | None = None) -> Study:
-    """A study that comes with Footfall by name, or anybody's by the path of its TOML file.
+    """A study that comes with Footfall by name, or your own by the path of its TOML file.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def read_study(name_or_path: str, changes: Mapping[str, Any] | None = None) -> S
     stock = stock_studies()
     path = stock.get(name_or_path, Path(name_or_path))
     if not path.is_file():
-        raise InputError(f"neither a study that comes with Footfall ({', '.join(stock)}) nor a file", path)
+        raise no_such_file("study", name_or_path, stock)
     return build_study(path.stem, {**parse_toml(path), **(changes or {})}, str(path))
 
 

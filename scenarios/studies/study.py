@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field
 
@@ -22,6 +22,9 @@ from footfall.scenarios.studies.design import DesignTable
 from footfall.scenarios.studies.methods import MethodEntry, beside, method_of
 from footfall.scenarios.trial import find
 from footfall.toml import Strict, checked, no_such_file, parse_toml
+
+if TYPE_CHECKING:
+    from footfall.scenarios.studies.results import Results
 
 STOCK = Path(__file__).parent / "stock"
 FIRST = ("imu", "pdr.detector")  # what other addresses are inside of is set before them
@@ -71,7 +74,7 @@ class Study:
 
     @classmethod
     def read(cls, name_or_path: str | os.PathLike[str]) -> Study:
-        """A stock study by name, or anyone's by the path of its TOML file.
+        """A stock study by name, or your own by the path of its TOML file.
 
         Raises
         ------
@@ -160,17 +163,18 @@ class Study:
         """A context whose mistakes are told of this study."""
         return _Blamed(self.source or self.name)
 
-    def results(self, folder: str | os.PathLike[str] | None = None) -> Any:
-        """The finished study's rows (`footfall.scenarios.studies.rows`).
+    def results(self, folder: str | os.PathLike[str] | None = None) -> Results:
+        """The finished study's rows: a `table`, `to_pandas()` and `plot()`.
 
         Raises
         ------
         InputError
             There are none.
         """
+        from footfall.scenarios.studies.results import Results
         from footfall.scenarios.studies.rows import read_rows
 
-        return read_rows(Path(folder or Path("out") / self.name) / "results.parquet")
+        return Results(read_rows(Path(folder or Path("out") / self.name) / "results.parquet"))
 
     def _with(self, table: str, values: Mapping[str, Any]) -> Study:
         return replace(self, table={**self.table, table: {**self.table.get(table, {}), **values}})

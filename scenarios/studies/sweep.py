@@ -24,7 +24,7 @@ from footfall.scenarios.studies.task import DiskFullError, Done, StoppedError, T
 from footfall.scenarios.studies.tracks import write_tracks
 from footfall.simulate.cache import is_cached
 
-ALIKE = 20  # tasks, or walks, that all fail for one reason: nobody waits for the rest
+ALIKE = 20  # tasks, or walks, that all fail for one reason: the rest is not tried
 
 Executor = Callable[..., Iterator[Done]]
 
@@ -234,7 +234,7 @@ class _Watch:
 
 
 class _Alike:
-    """Sees to it that a study all of which fails for one reason ends with that reason, and soon."""
+    """Ends a study soon, where all of it fails for one reason."""
 
     def __init__(self, over: bool) -> None:
         self._reasons: frozenset[str] | None = None

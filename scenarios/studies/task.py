@@ -141,7 +141,7 @@ def do(task: Task, walks: Path | None = None, store: Path | None = None, walk: W
     ----------
     walks : folder of walks; the user's cache when None
     store : folder of footfalls (`footfall.scenarios.store`); None keeps none
-    walk : the task's, where whoever calls has it
+    walk : the task's, where the caller has it
 
     Raises
     ------
@@ -210,7 +210,7 @@ def do_walk(
 
 
 def lost(task: Task, error: InputError, stage: str = "walk") -> Done:
-    """A task none of which came to an end, for one reason."""
+    """The rows of a task that failed as a whole, for one reason."""
     rows: list[Row] = []
     keys: list[str] = []
     for trials, cells in task.trials():

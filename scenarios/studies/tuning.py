@@ -88,6 +88,7 @@ def tuned(
 
     Parameters
     ----------
+    study : its name or file
     workers, folder : as of `perform_tuning`
     **changes : keys of the file with other values, as `method="hdr-basic"`
 

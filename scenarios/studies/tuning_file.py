@@ -17,7 +17,7 @@ from footfall.scenarios.studies.points import Over, Worn, require_allowed, requi
 from footfall.scenarios.studies.sensitivity_file import with_units
 from footfall.scenarios.studies.tune import require_apart
 from footfall.scenarios.trial import Trial
-from footfall.toml import Strict, checked, parse_toml
+from footfall.toml import Strict, checked, no_such_file, parse_toml
 
 FOLDER = Path(__file__).resolve().parent / "stock" / "tuning"  # of the studies that come with Footfall
 
@@ -70,7 +70,7 @@ def stock_tunings() -> dict[str, Path]:
 
 
 def read_tuning(name_or_path: str, changes: Mapping[str, Any] | None = None) -> Tuning:
-    """A tuning that comes with Footfall by name, or anybody's by the path of its TOML file.
+    """A tuning that comes with Footfall by name, or your own by the path of its TOML file.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def read_tuning(name_or_path: str, changes: Mapping[str, Any] | None = None) -> 
     stock = stock_tunings()
     path = stock.get(name_or_path, Path(name_or_path))
     if not path.is_file():
-        raise InputError(f"neither a tuning that comes with Footfall ({', '.join(stock)}) nor a file", path)
+        raise no_such_file("tuning", name_or_path, stock)
     table = parse_toml(path)
     for key, value in (changes or {}).items():
         before = table.get(key)

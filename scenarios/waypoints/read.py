@@ -8,7 +8,7 @@ import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
 import numpy as np
@@ -23,10 +23,22 @@ _EARTH = tuple(
 )
 
 
-def read_points(path: str | os.PathLike[str]) -> np.ndarray:
-    """The points of a file in their order; (n, 2) m, x to the east and y to the north of the first one.
+_HEIGHT = ("ele", "elevation", "altitude", "alt", "height", "z", "z_m", "up_m")
 
-    Heights are not read: the path is level.
+
+class Points(NamedTuple):
+    """Points on the way, in their order.
+
+    place : (n, 2) m, to the east and to the north of the first one
+    height : (n,) m, NaN where a point has none
+    """
+
+    place: np.ndarray
+    height: np.ndarray
+
+
+def read_points(path: str | os.PathLike[str]) -> Points:
+    """The points of a file.
 
     Raises
     ------
@@ -45,14 +57,14 @@ def read_points(path: str | os.PathLike[str]) -> np.ndarray:
     except UnicodeDecodeError as error:
         raise InputError(f"not UTF-8 text ({error.reason})", source) from None
     try:
-        points, geodetic = read(text)
+        points, heights, geodetic = read(text)
         if len(points) < 2:
             raise InputError(f"{len(points)} points, expected at least 2")
         found = np.asarray(points, dtype=float)
         if not np.isfinite(found).all():
             row = int(np.argmin(np.isfinite(found).all(axis=1)))
             raise InputError(f"point no. {row + 1} is not finite")
-        return projected(found) if geodetic else found - found[0]
+        return Points(projected(found) if geodetic else found - found[0], np.array(heights, dtype=float))
     except InputError as error:
         raise error.about(source) from None
 
@@ -85,7 +97,8 @@ def projected(degrees: np.ndarray) -> np.ndarray:
     return np.column_stack([east * np.radians(away), north * np.radians(lat - lat[0])])
 
 
-_Points = tuple[Sequence[Sequence[float]], bool]  # and whether they are longitude and latitude
+# Places, heights, and whether the places are longitude and latitude.
+_Points = tuple[Sequence[Sequence[float]], Sequence[float], bool]
 
 
 def _csv(text: str) -> _Points:
@@ -95,7 +108,9 @@ def _csv(text: str) -> _Points:
         for pair in pairs:
             if set(pair) <= set(names):
                 at = [names.index(name) for name in pair]
-                return [[_number(row, i, n) for i in at] for n, row in enumerate(rows[1:], 1)], geodetic
+                places = [[_number(row, i, n) for i in at] for n, row in enumerate(rows[1:], 1)]
+                up = next((names.index(name) for name in _HEIGHT if name in names), len(names))
+                return places, [_height(row[up : up + 1]) for row in rows[1:]], geodetic
     raise InputError("expected columns x, y (m), or lat, lon (deg), named in the first line")
 
 
@@ -104,6 +119,14 @@ def _number(row: Sequence[str], column: int, number: int) -> float:
         return float(row[column])
     except (ValueError, IndexError):
         raise InputError(f"point no. {number} is not two numbers: {','.join(row)!r}") from None
+
+
+def _height(told: Sequence[Any]) -> float:
+    """The number that is told first, else NaN: a height is not needed."""
+    try:
+        return float(told[0])
+    except (TypeError, ValueError, IndexError):
+        return math.nan
 
 
 def _gpx(text: str) -> _Points:
@@ -120,9 +143,10 @@ def _gpx(text: str) -> _Points:
     )
     points = _only(ways)
     try:
-        return [(float(point.attrib["lon"]), float(point.attrib["lat"])) for point in points], True
+        places = [(float(point.attrib["lon"]), float(point.attrib["lat"])) for point in points]
     except (KeyError, ValueError):
         raise InputError("a point without lat and lon, expected numbers in degrees") from None
+    return places, [_height([point.findtext("{*}ele")]) for point in points], True
 
 
 def _geojson(text: str) -> _Points:
@@ -135,9 +159,10 @@ def _geojson(text: str) -> _Points:
     places = [place for kind, place in shapes if kind == "place"]
     points = _only(ways or [places])
     try:
-        return [(float(point[0]), float(point[1])) for point in points], True
+        places = [(float(point[0]), float(point[1])) for point in points]
     except (TypeError, ValueError, IndexError):
         raise InputError("coordinates are not pairs of longitude and latitude") from None
+    return places, [_height(point[2:]) for point in points], True
 
 
 def _shapes(told: Any) -> Iterator[tuple[str, Any]]:

@@ -20,6 +20,7 @@ from footfall.tables import replacing
 spatial = late("scipy.spatial")
 
 TOLERANCE_M = 0.5
+_FLAT_M = 0.05  # between heights: less is not worth a word
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,7 @@ class Traced:
     points : (n, 2) m, turned and moved as the path is: it begins at the origin, heading along x
     off : (n,) m, of each point to the path
     east : rad, course of the east in these coordinates
+    climb : m, from the lowest to the highest point, which the path leaves out; 0 where no height is known
     """
 
     path: Path
@@ -39,6 +41,7 @@ class Traced:
     points: np.ndarray
     off: np.ndarray
     east: float
+    climb: float
 
 
 def trace(
@@ -56,7 +59,7 @@ def trace(
     InputError
         As `read_points` and `fit`; a path that cannot be laid out.
     """
-    points = read_points(source)
+    points, height = read_points(source)
     try:
         found, path = _closed_if_it_can(fit(points, tolerance, corner_radius))
     except InputError as error:
@@ -64,7 +67,9 @@ def trace(
     c, s = math.cos(found.heading), math.sin(found.heading)
     here = (points - found.origin) @ np.array([[c, -s], [s, c]])
     off, _ = spatial.cKDTree(np.column_stack([path.route.x, path.route.y])).query(here)
-    return Traced(path, found.elements, here, np.asarray(off), -found.heading)
+    known = height[np.isfinite(height)]
+    climb = float(np.ptp(known)) if known.size else 0.0
+    return Traced(path, found.elements, here, np.asarray(off), -found.heading, climb)
 
 
 def _closed_if_it_can(found: Fit) -> tuple[Fit, Path]:
@@ -89,9 +94,10 @@ def told(traced: Traced) -> str:
         if count := sum(isinstance(element, kind) for element in traced.elements):
             counts.append(f"{count} {name}{'s' if count > 1 else ''}")
     way = "closed path" if traced.path.closed else "path"
+    level = f"; level, although heights differ by {traced.climb:.1f} m" if traced.climb >= _FLAT_M else ""
     return (
         f"{way} of {traced.path.route.length:.0f} m: {', '.join(counts)}; "
-        f"at most {traced.off.max():.1f} m off the {len(traced.points)} points"
+        f"at most {traced.off.max():.1f} m off the {len(traced.points)} points{level}"
     )
 
 

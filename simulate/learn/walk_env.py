@@ -12,7 +12,7 @@ import numpy as np
 
 from footfall.errors import InputError
 from footfall.models.subject import SUBJECTS, Build, Subject, draw_subject
-from footfall.simulate.draw import QUARTER_VIEW, Painter, Stage, Window
+from footfall.simulate.draw import QUARTER_VIEW, Painter, Stage, Window, has_screen
 from footfall.simulate.episode import Episode
 from footfall.simulate.learn.env import (
     ACTION_SPACE,
@@ -58,7 +58,7 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
     Raises
     ------
     InputError
-        An unknown render mode.
+        An unknown render mode, scenario or subject.
     """
 
     metadata = {  # noqa: RUF012 - gymnasium's declaration
@@ -79,6 +79,8 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
     ) -> None:
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise InputError(f"render_mode = {render_mode!r}: expected None, 'human' or 'rgb_array'")
+        if not has_screen():  # checkers draw by every mode that is told
+            self.metadata = self.metadata | {"render_modes": ["rgb_array"]}
         self.render_mode, self._size = render_mode, (width, height)
         self.observation_space, self.action_space = OBSERVATION_SPACE, ACTION_SPACE
         self._defaults = {"scenario": scenario, "subject": subject}
@@ -88,6 +90,10 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
         self._course: _Commands | _Path | None = None
         self._stage: Stage | None = None
         self._canvas: Painter | Window | None = None
+        # What is unknown is refused here. "drawn" would draw.
+        self._plan(scenario)
+        if subject != "drawn":
+            self._subject(subject)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

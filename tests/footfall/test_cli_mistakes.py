@@ -62,6 +62,7 @@ def bad(here):
     track, _ = read_table("hdr.parquet")
     write_csv("late.csv", track | {"t": track["t"] + 100})
     write_csv("half.csv", {key: values[:8] for key, values in track.items()})
+    write_csv("phone.csv", {"seconds": rec["t"], "ax": rec["accel_x"]})
     write_csv("lost.csv", track | {"x": at(3, track["x"], np.inf)})
     return here
 
@@ -73,12 +74,23 @@ REFUSED = [
     ("run", "Missing argument"),
     ("walk short.toml", "Missing option '--output' / '-o'"),
     ("run short.toml --walks 0", "'--walks'.* 1, got '0'"),
-    ("run short.toml --walks two", "'--walks'.* integer, got 'two'"),
-    ("run short.toml --walks=two", "'--walks'.* integer, got 'two'"),
+    ("run short.toml --walks two", "'--walks'.* (integer|whole number), got 'two'"),
+    ("run short.toml --walks=two", "'--walks'.* (integer|whole number), got 'two'"),
     ("run folder", "scenario 'folder': a folder, expected a TOML file"),
     ("record walk.parquet -o r.parquet --outdoors -400", "'--outdoors'.* -40, got '-400'"),
     ("record walk.parquet -o r.parquet --set imu.gyro.scale_sigma=1000", "gyro.scale_sigma = 1000.*0.5"),
     ("score hdr.parquet rec.parquet", "rec.parquet: is a recording, expected a walk"),
+    ("score rec.parquet walk.parquet", "rec.parquet: is a recording, expected a track"),
+    ("score rec.parquet --closed", "rec.parquet: is a recording, expected a track"),
+    ("record hdr.parquet -o r.parquet", "hdr.parquet: is a track, expected a walk"),
+    (
+        "record phone.csv -o r.parquet",
+        "phone.csv: is not a walk: its columns are seconds, ax; .*--from-recording",
+    ),
+    ("parameters thetaw", "no address contains 'thetaw'; did you mean theta_w_deg_s"),
+    ("parameters 42", "no address contains '42'; `footfall parameters` lists them all"),
+    ("sensitivity nimu-headin", "study 'nimu-headin': neither a stock study .*; did you mean nimu-heading"),
+    ("tune hdr-closed", "tuning 'hdr-closed': neither a stock tuning .*; did you mean hdr-closed-loop"),
     ("walk short.toml -o w.parquet --rate nan", "'--rate'.* nan .*finite"),
     ("track rec.parquet -o t.parquet --heading inf", "'--heading'.* inf .*finite"),
     ("track rec.parquet -o t.parquet --method hde --reference nan", "'--reference'.* nan .*finite"),
@@ -94,7 +106,7 @@ REFUSED = [
     ("run short.toml --imu nimo", r"IMU 'nimo': neither a stock IMU nor a TOML file .*; did you mean nimu\?"),
     (
         "run short.toml --imu sheet.toml",
-        r"sheet.toml: gyro.flicker_deg_h = -1.0: .*greater than or equal to 0",
+        r"sheet.toml: gyro.flicker_deg_h = -1.0: expected at least 0",
     ),
     ("walk short.toml -o w.parquet --mount hat", "--mount 'hat' is unknown; expected one of instep"),
     ("record walk.parquet --imu nimo -o r.parquet", "IMU 'nimo'"),
@@ -155,7 +167,7 @@ REFUSED = [
     ("track g.csv -o t.parquet", "g.csv: the accelerometers measure 1.* at rest, expected 9.81"),
     ("track rec.parquet --bias-time -1 -o t.parquet", "--bias-time: bias_s = -1.0, expected a positive"),
     ("score gone.parquet walk.parquet", "gone.parquet: no such file"),
-    ("score walk.parquet hdr.parquet", "walk.parquet: column 'x' is missing"),
+    ("score walk.parquet hdr.parquet", "walk.parquet: is a walk, expected a track"),
     ("score hdr.parquet lonely.parquet", "lonely.footfalls.parquet: no such file"),
     (
         "score hdr.parquet elsewhere.parquet",

@@ -31,7 +31,8 @@ PAGES = sorted(
     for page in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *DOCS.rglob("*.md"))
     if page.is_file() and blocks(page.read_text(encoding="utf-8"))
 )
-LANGUAGES = {"bash", "python", "toml", "yaml"}
+SHELL = {"bash", "console"}
+LANGUAGES = {*SHELL, "python", "toml", "yaml"}
 
 # Programs of others.
 OTHERS = {
@@ -46,6 +47,7 @@ OTHERS = {
     "source",
     "dask",
     "kubectl",
+    "c++",
     "uv",
 }
 # They run here: what they need is made by others before them, and takes no walk.
@@ -86,8 +88,8 @@ def of(language):
     return [pytest.param(*one, id=f"{one[0]}:{one[1].line}") for one in found]
 
 
-def pages_with(language):
-    return [page for page in PAGES if any(block.language == language for block in blocks(text_of(page)))]
+def pages_with(*languages):
+    return [page for page in PAGES if any(block.language in languages for block in blocks(text_of(page)))]
 
 
 needs_docs = pytest.mark.skipif(not DOCS.is_dir(), reason="no docs beside these tests")
@@ -111,6 +113,11 @@ def folder(here, monkeypatch):
     for file in (DOCS / "examples" / "methods").glob("*.py"):
         shutil.copy(file, here)
     (here / "docs").symlink_to(DOCS)
+    (here / "nav").write_text("#!/bin/sh\n", encoding="utf-8")  # in place of what a compiler makes
+    (here / "nav").chmod(0o755)
+    tuned = here / "out" / "hdr-closed-loop" / "tuned.toml"
+    tuned.parent.mkdir(parents=True)
+    tuned.write_text('[set]\n"hdr.theta_w_deg_s" = 0.3\n', encoding="utf-8")
     monkeypatch.syspath_prepend(str(here))
     # A method of a page runs in this process; the pool that README speaks of has its own tests.
     monkeypatch.setattr("footfall.scenarios.evaluate.travelling", lambda methods, workers=None: 1)
@@ -243,7 +250,9 @@ def perform(words, monkeypatch):
     elif program == "python" and rest[0] == "-m":
         module_of(rest, monkeypatch)
     elif program == "python" and rest[0] == "-c":
-        exec(rest[1], {"__name__": "__main__"})
+        code = compile(rest[1], "-c", "exec")
+        if "'out/" not in rest[1]:  # what a study has left
+            exec(code, {"__name__": "__main__"})
     elif program == "python":
         parse_script(lambda: runpy.run_path(rest[0], run_name="__main__"), rest[1:], monkeypatch)
     elif "/" in program:
@@ -252,13 +261,13 @@ def perform(words, monkeypatch):
         assert program in OTHERS, program
 
 
-@pytest.mark.parametrize("page", pages_with("bash"))
+@pytest.mark.parametrize("page", pages_with(*SHELL))
 def test_the_commands_of_a_page_are_such_as_there_are(page, folder, monkeypatch, capsys):
     for block in blocks(text_of(page)):
         if block.language == "toml" and "[path]" in block.code:
             (folder / "park.toml").write_text(block.code, encoding="utf-8")
-        if block.language == "bash":
-            for words in commands(block.code):
+        if block.language in SHELL:
+            for words in commands(block.code, block.language):
                 perform(words, monkeypatch)
 
 
@@ -297,5 +306,18 @@ def test_commands_are_cut_out_of_their_lines():
         ["pip", "install", "-e", ".[docs]"],
         ["footfall", "run", "a b"],
     ]
-    page = "# Title\n\n```bash\none\n```\n\n    ```\n\n```python\ntwo\nthree\n```\n"
-    assert [tuple(block) for block in blocks(page)] == [("bash", 4, "one\n"), ("python", 10, "two\nthree\n")]
+    assert list(commands("$ footfall list\nScenarios\n", "console")) == [["footfall", "list"]]
+
+
+def test_blocks_are_found_with_their_lines():
+    page = (
+        "# Title\n\n```bash\none\n```\n\n    ```\n\n```python\ntwo\nthree\n```\n\n"
+        "    footfall list\n    footfall run x\n\n    a = b\n\n```\npython four\n```\n\n```\nfive\n```\n"
+    )
+    assert [tuple(block) for block in blocks(page)] == [
+        ("bash", 4, "one\n"),
+        ("python", 10, "two\nthree\n"),
+        ("bash", 14, "footfall list\nfootfall run x\n"),
+        ("bash", 20, "python four\n"),
+        ("text", 24, "five\n"),
+    ]

@@ -12,6 +12,17 @@ def test_a_scenario_and_its_map(cli, tmp_path, monkeypatch):
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_heights_that_the_path_leaves_out_are_told(cli, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "hill.csv").write_text("x,y,z\n0,0,3\n40,0,\n40,30,7.25\n")
+    (tmp_path / "flat.csv").write_text("x,y,z\n0,0,3\n40,0,3\n40,30,3.01\n")
+    code, _, err = cli("scenario from hill.csv -o hill.toml")
+    assert (code, err.strip().endswith("3 points; level, although heights differ by 4.2 m")) == (0, True), err
+    assert "although heights differ by 4.2 m" in (tmp_path / "hill.toml").read_text().splitlines()[0]
+    code, _, err = cli("scenario from flat.csv -o flat.toml")
+    assert (code, err.strip().endswith("3 points")) == (0, True), err
+
+
 def test_nothing_is_written_of_what_cannot_be_walked(cli, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "way.csv").write_text("x,y\n0,0\n40,0\n0,0\n")

@@ -1,11 +1,15 @@
 """What notebooks show: pandas with units, a table of HTML, and a figure."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from footfall import Recording, Track
 from footfall.scenarios.evaluate import Rows
 from footfall.scenarios.judge.score import Score
+from footfall.scenarios.studies.results import Results
+from footfall.scenarios.studies.rows import table
 from footfall.scenarios.trial import Row
 from footfall.shown import STYLE, styled, table_html
 
@@ -130,6 +134,41 @@ def test_figures():
     assert sorted(mean.lines[0].get_xdata()) == [10, 30]
     assert final.lines[1].get_xdata() == [40]
     assert [label.get_text() for label in mean.get_yticklabels()] == ["PDR", "<hdr>"]
+
+
+def test_a_score_is_a_row_and_bars():
+    score = Score(1.0, 2.0, 3.0, -4.0, 5.0, 6.0)
+    frame = score.to_pandas()
+    assert frame.loc[0].to_dict() == score.as_dict()
+    assert frame.attrs["units"]["return_error_pct"] == "%"
+    assert "Score: 1 row<" in score._repr_html_()
+    drawn = {bar.get_width() for axis in score.plot() for bar in axis.patches}
+    assert drawn == {1.0, 2.0, 3.0, -4.0, 5.0, 6.0}
+    assert [axis.get_xlabel() for axis in mpl.pyplot.gcf().axes] == ["deg", "%", "m"]
+
+
+def test_results_of_a_study_are_shown_over_its_axes():
+    made = [replace(row, unit_seed=k) for k, row in enumerate(rows()) for _ in range(2)]
+    width = [
+        {"hdr.theta_w_deg_s": w} if row.method == "<hdr>" else {}
+        for row, w in zip(made, [0.1, 0.5] * 4, strict=True)
+    ]
+    found = Results(table(made, width, {"hdr.theta_w_deg_s": "number"}))
+    assert len(found) == 8
+    assert found.axes() == {"hdr.theta_w_deg_s": [0.1, 0.5]}
+    frame = found.to_pandas()
+    assert list(frame["heading_error_mean_deg"].dropna()) == [10, 10, 30, 30, 5, 5]
+    assert frame.attrs["units"]["position_rmse_m"] == "m"
+    told = found._repr_html_()
+    for words in (
+        "Results (8 rows) by method, in deg: 2 rows",
+        "<td>&lt;hdr&gt;</td><td>4</td><td>2</td><td>5</td>",
+    ):
+        assert words in told
+    (panel,) = found.plot()
+    assert [line.get_ydata().tolist() for line in panel.lines] == [[20, 20], [30, 30], [5, 5], [5, 5]]
+    assert [label.get_text() for label in panel.get_xticklabels()] == ["0.1", "0.5"]
+    assert panel.get_xlabel() == "hdr.theta_w_deg_s"
 
 
 def test_the_style_is_the_packages_and_leaves_yours_alone():

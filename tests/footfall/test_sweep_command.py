@@ -60,8 +60,13 @@ def test_what_comes_with_footfall_is_listed(cli):
     assert sorted(told) == list(stock_studies())
 
 
+def files(place):
+    """Everything that lies there; Python may keep a method's bytecode."""
+    return sorted(path for path in place.rglob("*") if "__pycache__" not in path.parts)
+
+
 def test_a_plan_tells_the_cost_and_does_nothing(place, cli):
-    before = sorted(place.rglob("*"))
+    before = files(place)
     code, out, _ = cli("sweep small.toml --plan")
     assert code == 0
     assert "small: 1 scenario x 2 tilt gain x 8 units x (pdr + slow): 32 rows" in out
@@ -69,7 +74,7 @@ def test_a_plan_tells_the_cost_and_does_nothing(place, cli):
     told = one_document(cli("sweep small.toml --plan --units 3 --json")[1])
     assert told["rows"] == 12
     assert told["left"]["recordings"] == 3
-    assert sorted(place.rglob("*")) == before
+    assert files(place) == before
 
 
 def test_a_sweep_and_its_second_start(place, cli):
@@ -175,6 +180,13 @@ def alive(pid):
         return "Z" not in Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1][:3]
     except OSError:
         return False
+
+
+def test_a_log_tells_how_a_sweep_ended(place, cli):
+    assert cli("--log my.log sweep small.toml --workers 1")[0] == 0
+    last, ended = (place / "my.log").read_text(encoding="utf-8").splitlines()[-2:]
+    assert re.search(r"INFO small: 100%, finished, (\d+) of \1 recordings", last), last
+    assert " INFO ended after " in ended
 
 
 def test_kill_9_at_any_moment_changes_no_bit_and_leaves_no_process(place, cli):

@@ -114,7 +114,7 @@ def changed(**keys):
     ("keys", "message"),
     [
         ({"layout": "room"}, r"path.layout = 'room': .*'rooms' or 'corridors'"),
-        ({"length_m": 5.0}, r"path.length_m = 5.0: .*greater than or equal to 20"),
+        ({"length_m": 5.0}, r"path.length_m = 5.0: expected at least 20"),
         ({"closed": True}, r"unknown key 'path.closed' = True"),
         ({"length_m": 262.0}, r"stops no. 4, at_m = 260: .*path's end at 262 m"),
     ],

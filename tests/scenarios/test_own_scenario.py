@@ -129,7 +129,9 @@ def test_a_document_that_is_changed_is_built_and_refused_as_a_file_is(own):
     assert (brisk.gait.pace_m_s, brisk.plan(0).gait.pace_m_s) == (1.6, 1.6)
     assert load_scenario(path).changed("gait", pace_m_s=1.6).file == brisk.file
     assert build_scenario(document).gait.pace_m_s == 1.2
-    with pytest.raises(InputError, match=rf"^{re.escape(str(path))}: gait.pace_m_s = 1.9: .* equal to 1.7"):
+    with pytest.raises(
+        InputError, match=rf"^{re.escape(str(path))}: gait.pace_m_s = 1.9: expected at most 1.7"
+    ):
         build_scenario(document.changed("gait", pace_m_s=1.9))
     # One that comes from no file is spoken of by its name.
     with pytest.raises(InputError, match=r"^mine: unknown key 'sensor.imo' = 3; did you mean imu\?$"):
@@ -216,11 +218,11 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
         ("walks = 3", "wlaks = 3", r"unknown key 'seeds.wlaks' = 3"),
         ("[gait]", "[gate]", r"key 'gait' is missing|unknown key 'gate'"),
         ('description = "mine"', "", r"key 'description' is missing"),
-        ("pace_m_s = 1.2", "pace_m_s = 1.8", r"gait.pace_m_s = 1.8: .* less than or equal to 1.7"),
+        ("pace_m_s = 1.2", "pace_m_s = 1.8", r"gait.pace_m_s = 1.8: expected at most 1.7"),
         (
             "[path]",
             "paces = [{ at_m = 20.0, m_s = 2.5 }]\n[path]",
-            r"paces no. 1, m_s = 2.5: .* to 1.7",
+            r"paces no. 1, m_s = 2.5: expected at most 1.7",
         ),
         (
             "[path]",
@@ -233,8 +235,12 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
             r"paces no. 1, at_m = 900: expected .* end at",
         ),
         ("pace_m_s = 1.2", "pace_m_s = nan", r"gait.pace_m_s = nan: .* finite"),
-        ("pace_m_s = 1.2", 'pace_m_s = "1.2"', r"gait.pace_m_s = '1.2': .* valid number"),
-        ("length_m = 50 ", "length_m = -50 ", r"path.elements no. 1, length_m = -50(.0)?: .* greater than 0"),
+        ("pace_m_s = 1.2", 'pace_m_s = "1.2"', r"gait.pace_m_s = '1.2': expected a number"),
+        (
+            "length_m = 50 ",
+            "length_m = -50 ",
+            r"path.elements no. 1, length_m = -50(.0)?: expected more than 0",
+        ),
         ("turn_deg = 90.0", "turn_deg = inf", r"path.elements no. 2, turn_deg = inf: .* finite"),
         (
             "turn_deg = 90.0",
@@ -247,6 +253,11 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
             r"path.elements no. 3, length_m = 1: too short for",
         ),
         ("turn_deg = 90.0", "turn_deg = 90.0, radius = 3", r"unknown key 'path.elements no. 2, radius' = 3"),
+        (
+            'kind = "corner"',
+            'kind = "cornr"',
+            r"path.elements no. 2, kind = 'cornr': unknown; did you mean corner\?",
+        ),
         ("[gait]", "closed = true\n[gait]", r"path.closed = true: .* \(50.000, 30.000\) m, 58.310 m from"),
         ('["taller",', '["giant",', r"subjects no. 1 = 'giant' is unknown; expected one of reference, "),
         ("mass_kg = 80.0", "mass_kg = 120.0", r"subject 'me': mass_kg = 120 is outside"),
@@ -258,32 +269,32 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
             'imu = "nimu"\nrate_hz = 300',
             r"sensor.rate_hz: rate = 300 Hz does not divide the physics rate",
         ),
-        ("pace_m_s = 1.2", "pace_m_s = 1.2\nwander_m = 0.6", r"gait.wander_m = 0.6: .* equal to 0.5"),
-        ("pace_m_s = 1.2", 'pace_m_s = 1.2\nwander_m = "0.1"', r"gait.wander_m = '0.1': .* valid number"),
+        ("pace_m_s = 1.2", "pace_m_s = 1.2\nwander_m = 0.6", r"gait.wander_m = 0.6: expected at most 0.5"),
+        ("pace_m_s = 1.2", 'pace_m_s = 1.2\nwander_m = "0.1"', r"gait.wander_m = '0.1': expected a number"),
         (
             "pace_m_s = 1.2",
             "pace_m_s = 1.2\nplacement_variability = -0.1",
-            r"gait.placement_variability = -0.1: .* greater than or equal to 0",
+            r"gait.placement_variability = -0.1: expected at least 0",
         ),
         (
             "pace_m_s = 1.2",
             "pace_m_s = 1.2\ncadence_variability = 2.1",
-            r"gait.cadence_variability = 2.1: .* less than or equal to 2",
+            r"gait.cadence_variability = 2.1: expected at most 2",
         ),
         (
             "pace_m_s = 1.2",
             "pace_m_s = 1.2\ntoe_out_variability = nan",
             r"gait.toe_out_variability = nan: .* finite",
         ),
-        ("pace_m_s = 1.2", "pace_m_s = 1.2\nwander_m = []", r"gait.wander_m: .* at least 1"),
+        ("pace_m_s = 1.2", "pace_m_s = 1.2\nwander_m = []", r"gait.wander_m: expected at least 1"),
         (
             "pace_m_s = 1.2",
             "pace_m_s = 1.2\nwander_time_s = [4.0, 0.1]",
-            r"gait.wander_time_s no. 2 = 0.1: .* equal to 0.5",
+            r"gait.wander_time_s no. 2 = 0.1: expected at least 0.5",
         ),
-        ("base = 40", "base = -1", r"seeds.base = -1: .* greater than or equal to 0"),
-        ("base = 40", "base = 1.5", r"seeds.base = 1.5: .* valid integer"),
-        ("walks = 3", "walks = 0", r"seeds.walks = 0: .* greater than or equal to 1"),
+        ("base = 40", "base = -1", r"seeds.base = -1: expected at least 0"),
+        ("base = 40", "base = 1.5", r"seeds.base = 1.5: expected a whole number"),
+        ("walks = 3", "walks = 0", r"seeds.walks = 0: expected at least 1"),
         ("units = [7, 9]", "units = [7, -9]", r"seeds.units no. 2 = -9"),
         ("units = [7, 9]", "units = []", r"seeds.units"),
         ("[sensor]", "[sensor", r"not valid TOML"),
@@ -292,7 +303,7 @@ def test_a_sheet_of_ones_own_lies_beside_the_scenario(own, tmp_path, monkeypatch
         (
             "[temperature]",
             "[[temperature]]\nindoors_degC = 20.0\noutdoors_degC = 99.0\n[[temperature]]",
-            r": temperature no. 1, outdoors_degC = 99.0: .* less than or equal to 85",
+            r": temperature no. 1, outdoors_degC = 99.0: expected at most 85",
         ),
         (
             "[temperature]",
@@ -317,8 +328,8 @@ def test_mistakes_are_refused_by_file_key_value_and_reason(own, old, new, messag
 def test_a_list_of_temperatures_is_of_at_least_one_and_of_tables(own):
     table = "[temperature]\nindoors_degC = 21.0\noutdoors_degC = 21.0\n"
     for value, reason in (
-        ("[]", r"temperature: .* at least 1 item"),
-        ("[5.0]", r"temperature no. 1 = 5.0"),
+        ("[]", r"temperature: expected at least 1 item"),
+        ("[5.0]", r"temperature no. 1 = 5.0: expected a table"),
     ):
         path = own((table, ""), ("subjects =", f"temperature = {value}\nsubjects ="))
         with pytest.raises(InputError, match=rf"{re.escape(str(path))}: {reason}"):

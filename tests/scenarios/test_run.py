@@ -210,7 +210,7 @@ def test_one_walk_in_the_folder_and_on_the_terminal(cli, here):
     for name in ("pdr", "hdr"):
         assert set(row["methods"][name]) == SCORES
         errors = row["methods"][name]
-        assert f"{errors['heading_error_final_deg']:.1f} / {errors['heading_error_mean_deg']:.1f}" in out
+        assert f"{errors['heading_error_mean_deg']:.1f} / {errors['heading_error_final_deg']:.1f}" in out
         assert scores["mean"][name] == pytest.approx(errors)
     assert scores["other_units"]["count"] == 2
     assert "2 other units" in out

@@ -34,13 +34,25 @@ def env():  # type: ignore[no-untyped-def]
     made.close()
 
 
+@pytest.fixture(scope="module")
+def can_draw() -> bool:
+    """Whether this machine has a screen or EGL."""
+    made = gym.make(ID, render_mode="rgb_array")
+    made.reset(seed=1)
+    try:
+        return made.render() is not None
+    except InputError:
+        return False
+    finally:
+        made.close()
+
+
 @pytest.mark.parametrize("settings", [{}, {"scenario": "turning", "subject": "drawn"}])
-def test_check_env_finds_nothing(settings: dict) -> None:
+def test_check_env_finds_nothing(settings: dict, can_draw: bool) -> None:
     made = gym.make(ID, **settings)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        # Pictures have tests of their own: not every machine has a screen.
-        check_env(made.unwrapped, skip_render_check=True)
+        check_env(made.unwrapped, skip_render_check=not can_draw)
     made.close()
 
 
@@ -203,6 +215,27 @@ def test_bad_options_are_told_in_a_sentence(env: gym.Env, options: dict, culprit
     assert "\n" not in str(caught.value)
     bare.reset(seed=1)  # and the environment is still good
     bare.step(STILL)
+
+
+@pytest.mark.parametrize(
+    ("settings", "culprit"),
+    [
+        ({"scenario": "turnin"}, r"scenario 'turnin': neither a stock scenario nor .*turning"),
+        ({"subject": "tallr"}, r"option subject = 'tallr': expected 'reference'"),
+    ],
+)
+def test_make_refuses_what_is_unknown(settings: dict, culprit: str) -> None:
+    with pytest.raises(InputError, match=culprit):
+        gym.make(ID, **settings)
+
+
+def test_without_a_screen_no_window_is_promised(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("sys.platform", "linux")
+    assert gym.make(ID).metadata["render_modes"] == ["rgb_array"]
+    monkeypatch.setenv("DISPLAY", ":0")
+    assert gym.make(ID).metadata["render_modes"] == ["human", "rgb_array"]
 
 
 @pytest.mark.parametrize("action", [np.full(N_ACTION, np.nan), np.zeros(N_ACTION - 1)])

@@ -1,7 +1,7 @@
 """A page of results: one HTML file that needs nothing beside it and opens without a network.
 
-`write_page` is all that others need. A page is made from the files of its folder alone: what a folder holds
-decides of which kind it is.
+`write_page` is all that others need. A page is made from the files of its folder alone, which
+also decide its kind.
 """
 
 from __future__ import annotations

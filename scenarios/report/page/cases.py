@@ -71,7 +71,7 @@ class Cases:
         )
 
     def failures(self) -> list[tuple[int, str, str, str]]:
-        """How many rows failed, by whom, at which stage and why; the most frequent first."""
+        """How many rows failed, of which method, at which stage and why; the most frequent first."""
         lost = self.texts("stage") != ""
         told = zip(*(self.texts(name)[lost] for name in ("method", "stage", "error")), strict=True)
         counts: dict[tuple[str, str, str], int] = {}

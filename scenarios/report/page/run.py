@@ -38,7 +38,7 @@ _MOST_EVIDENCE = 5  # of a method's columns; more would fill a small screen
 _SHOWN_SHARE = 0.03  # of the largest cause of drift; smaller ones are pooled
 _TIME = Axis("time (s)")
 _MOST_CAUSES = 7  # as many colours as can be told apart
-_ERRORS = ("heading_error_final_deg", "heading_error_mean_deg")
+_ERRORS = ("heading_error_mean_deg", "heading_error_final_deg")
 _DEGREES = {"rad": "deg", "rad/s": "deg/s", "rad/step": "deg/step"}
 
 
@@ -314,7 +314,7 @@ def _scores(told: Mapping[str, Any], rows: Sequence[Mapping[str, Any]], methods:
     ):
         if key not in told:
             continue
-        heads = [f"{error}, {column} (deg)" for error in ("final", "average") for column in columns]
+        heads = [f"{error}, {column} (deg)" for error in ("average", "final") for column in columns]
         body = [
             [name, *(html.number(found[error][column]) for error in _ERRORS for column in columns)]
             for name, found in told[key]["methods"].items()

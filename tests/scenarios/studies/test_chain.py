@@ -77,7 +77,7 @@ def made(place, **table):
 def finished(study, folder, executor=1, **keys):
     *_, now = sweep(study, folder, executor, **keys)
     assert now.stage == "finished"
-    return study.results(folder).to_pylist()
+    return study.results(folder).table.to_pylist()
 
 
 def boom(reckoning, params):

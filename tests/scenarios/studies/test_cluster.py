@@ -97,7 +97,7 @@ def test_a_task_that_kills_its_worker_is_rows_and_costs_no_other_task_its_rows(p
     with Cluster(processes.workers(3)) as cluster:
         *_, now = sweep(study, place / "out", cluster)
     assert now.stage == "finished"
-    rows = study.results(place / "out").to_pylist()
+    rows = study.results(place / "out").table.to_pylist()
     lost = [row for row in rows if row["error"]]
     assert {row["imu"] for row in lost} == {"nimu"}
     assert {(row["stage"], row["error"]) for row in lost} == {

@@ -224,4 +224,4 @@ def test_the_stock_studies_are_listed(cli):
 def test_no_such_study(cli):
     code, _, told = cli("sensitivity nothing")
     assert code == 2
-    assert "nothing: neither a study that comes with Footfall" in told
+    assert "study 'nothing': neither a stock study nor a TOML file" in told

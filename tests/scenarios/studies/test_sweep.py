@@ -46,7 +46,7 @@ def test_a_study_becomes_one_sorted_dataset(tmp_path):
     now, tasks = done(small(), tmp_path)
     assert (now.stage, now.done, now.recordings, now.rows, now.failed) == ("finished", 80, 80, 480, 0)
     assert tasks == 8
-    rows = small().results(tmp_path)
+    rows = small().results(tmp_path).table
     assert len(rows) == 480
     told = [
         (row["number"], row["imu"], row["pdr.tilt_gain"], row["hdr.theta_w_deg_s"] or 9, row["unit_seed"])

@@ -47,19 +47,37 @@ def test_every_format_tells_the_same_way(tmp_path):
         "c.json": {"type": "FeatureCollection", "features": points},
         "d.json": {"type": "GeometryCollection", "geometries": [line(*PLACES)]},
     }.items():
-        np.testing.assert_allclose(read_points(written(tmp_path, name, content)), expected, err_msg=name)
+        np.testing.assert_allclose(
+            read_points(written(tmp_path, name, content)).place, expected, err_msg=name
+        )
 
 
 def test_a_polygon_is_its_outline(tmp_path):
     ring = [*PLACES, PLACES[0]]
     hole = [[0, 0], [1, 1], [0, 0]]
     file = written(tmp_path, "a.geojson", {"type": "Polygon", "coordinates": [ring, hole]})
-    assert len(read_points(file)) == 4
+    assert len(read_points(file).place) == 4
+
+
+def test_heights_are_read_where_there_are_any(tmp_path):
+    up = [512.5, np.nan, 509.0]
+    ele = gpx("trk", PLACES).split("/>")
+    named = (">" + (f"<ele>{h}</ele>" if h == h else "") + "</trkpt>" for h in up)
+    three = [[*place, *([h] if h == h else [])] for place, h in zip(PLACES, up, strict=True)]
+    cells = ["512.5", "", "509"]
+    rows = "".join(f"{lat},{lon},{h}\n" for (lon, lat), h in zip(PLACES, cells, strict=True))
+    for name, content in {
+        "a.csv": f"lat,lon,Altitude\n{rows}",
+        "a.gpx": "".join(part + end for part, end in zip(ele, [*named, ""], strict=True)),
+        "a.geojson": line(*three),
+    }.items():
+        np.testing.assert_array_equal(read_points(written(tmp_path, name, content)).height, up, err_msg=name)
 
 
 def test_a_plane_begins_at_its_first_point(tmp_path):
     file = written(tmp_path, "a.csv", "t,x,y\n0,5,7\n1,8,11\n")
-    np.testing.assert_array_equal(read_points(file), [[0, 0], [3, 4]])
+    np.testing.assert_array_equal(read_points(file).place, [[0, 0], [3, 4]])
+    assert np.isnan(read_points(file).height).all()
 
 
 def test_a_degree_on_the_ellipsoid():
