@@ -14,6 +14,7 @@ import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -24,9 +25,10 @@ from benchmarks.validation import real_chains
 from benchmarks.validation._chains import PATIENT, chain, piece_of
 from benchmarks.validation._real import BESIDE, find
 from benchmarks.validation.hypotheses import WORSE_DEG, Job, footfalls_of, jobs, setup_of
+from benchmarks.validation.hypotheses_wander import PATHS, SENSORS, WANDERS, Case, walked
 from footfall.errors import InputError
 from footfall.hdr.hypotheses.filter import Beliefs, beliefs
-from footfall.hdr.hypotheses.params import DEG, HypothesesParams
+from footfall.hdr.hypotheses.params import DEG, HABITS, HypothesesParams
 from footfall.hdr.hypotheses.smoother import smoothed
 from footfall.hdr.tracks import Reckoning, pdr_track
 from footfall.models.imu import draw_unit, load_spec
@@ -110,6 +112,24 @@ CURVES = {
     "smoothed, `straight_curve` .01 in parks": Way(_park(0.01), smooth=True),
 }
 PERFECT = {"as it comes": Way(), **CROWD, "`straight_curve` .01 in parks": Way(_park(0.01)), **BANKS}
+
+
+def _more_habits(wander: float, time: float) -> HypothesesParams:
+    """A sixth habit of walking streets."""
+    first = {name: getattr(USUAL, name)[0] for name in HABITS} | {"wander_m": wander, "wander_s": time}
+    return replace(USUAL, **{name: (*getattr(USUAL, name), first[name]) for name in HABITS})
+
+
+SLOWER = (*USUAL.wander_s[:2], 6.0, *USUAL.wander_s[3:])
+WANDER = {
+    "as it comes": Way(),
+    "a sixth habit, 0.35 m at 10 s": Way(_more_habits(0.35, 10.0)),
+    "the third habit slower, 0.4 m at 6 s": Way(replace(USUAL, wander_s=SLOWER)),
+    "`straight_curve` .01 in parks": Way(_park(0.01)),
+    **CROWD,
+    "`scales` 1, 0.03": BANKS["`scales` 1, 0.03"],
+    "`straight_curve` .01 and `scales` 1, 0.03": Way(replace(_park(0.01), scales=(1.0, 0.03))),
+}
 ROOMS = {
     "as it comes": Way(),
     **CROWD,
@@ -204,13 +224,14 @@ TABLES = {
     "ways in rooms": Table(ROOMS, ("rooms",), 24),
     "ways with a perfect IMU": Table(PERFECT, (*LOOP_NAMES, "errands", "curving"), 2, "perfect"),
 }
+WANDERING = "ways with wander"
 CHAINS = {"ways on real feet": "nimu", "ways on real feet as they are": None}
 
 
 def main() -> None:
     """Judge, and tell."""
     parser = options(__doc__)
-    names = [*TABLES, *CHAINS]
+    names = [*TABLES, WANDERING, *CHAINS]
     parser.add_argument("--tables", nargs="+", default=names, choices=names, metavar="NAME")
     parser.add_argument("--chains", type=int, default=20, help="of real walks, a group (default 20)")
     parser.add_argument("--store", type=Path, help="folder of footfalls (default a temporary one)")
@@ -222,6 +243,8 @@ def main() -> None:
             if name in TABLES:
                 groups = walks(TABLES[name], args.store or Path(folder), args.processes)
                 ways = TABLES[name].ways
+            elif name == WANDERING:
+                groups, ways = wandering(args.processes), WANDER
             else:
                 groups, ways = feet_of(CHAINS[name], args.chains, args.processes), FEET
             sheets.append(sheet(name, list(ways), groups))
@@ -239,6 +262,26 @@ def walks(table: Table, store: Path, processes: int) -> dict[str, np.ndarray]:
         parts = run_all(work, jobs((scenario,), table.imu, table.units), processes, scenario)
         groups[scenario] = np.array([one for part in parts for one in part])
     return groups
+
+
+def wandering(processes: int) -> dict[str, np.ndarray]:
+    """Errors on the made-up footfalls of hypotheses_wander.py, one of each case, by gyro and at the hole."""
+    cases = [
+        Case(path, m, s, sensor, 1000 * k + 1)
+        for path, sensor in product(PATHS, SENSORS)
+        for k, (m, s) in enumerate(WANDERS)
+    ]
+    found = np.array(run_all(made_up, cases, processes, "made-up walks"))
+    groups = {f"priors x {sensor:g}": np.array([c.sensor == sensor for c in cases]) for sensor in SENSORS}
+    hole = np.array([(c.wander_m, c.wander_s) == (0.35, 20.0) for c in cases])
+    groups |= {"0.35 m at 20 s": hole, "all but these": ~hole}
+    return {name: found[rows] for name, rows in groups.items()}
+
+
+def made_up(case: Case) -> np.ndarray:
+    """Errors of made-up footfalls."""
+    feet, drifted = walked(case)
+    return errors(feet, feet.heading - drifted, tuple(WANDER.values()))
 
 
 def feet_of(imu: str | None, chains: int, processes: int) -> dict[str, np.ndarray]:
