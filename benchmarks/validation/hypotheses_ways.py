@@ -23,6 +23,7 @@ from benchmarks._common import options, run_all, write_json
 from benchmarks._page import Sheet, by_name, fill
 from benchmarks.validation import real_chains
 from benchmarks.validation._chains import PATIENT, chain, piece_of
+from benchmarks.validation._hard_feet import cooling_on_a_curve, steady_bias
 from benchmarks.validation._real import BESIDE, find
 from benchmarks.validation.hypotheses import WORSE_DEG, Job, footfalls_of, jobs, setup_of
 from benchmarks.validation.hypotheses_wander import PATHS, SENSORS, WANDERS, Case, walked
@@ -224,14 +225,14 @@ TABLES = {
     "ways in rooms": Table(ROOMS, ("rooms",), 24),
     "ways with a perfect IMU": Table(PERFECT, (*LOOP_NAMES, "errands", "curving"), 2, "perfect"),
 }
-WANDERING = "ways with wander"
+WANDERING, HARD = "ways with wander", "ways on hard walks"
 CHAINS = {"ways on real feet": "nimu", "ways on real feet as they are": None}
 
 
 def main() -> None:
     """Judge, and tell."""
     parser = options(__doc__)
-    names = [*TABLES, WANDERING, *CHAINS]
+    names = [*TABLES, WANDERING, HARD, *CHAINS]
     parser.add_argument("--tables", nargs="+", default=names, choices=names, metavar="NAME")
     parser.add_argument("--chains", type=int, default=20, help="of real walks, a group (default 20)")
     parser.add_argument("--store", type=Path, help="folder of footfalls (default a temporary one)")
@@ -245,6 +246,8 @@ def main() -> None:
                 ways = TABLES[name].ways
             elif name == WANDERING:
                 groups, ways = wandering(args.processes), WANDER
+            elif name == HARD:
+                groups, ways = hard(), WANDER
             else:
                 groups, ways = feet_of(CHAINS[name], args.chains, args.processes), FEET
             sheets.append(sheet(name, list(ways), groups))
@@ -276,6 +279,15 @@ def wandering(processes: int) -> dict[str, np.ndarray]:
     hole = np.array([(c.wander_m, c.wander_s) == (0.35, 20.0) for c in cases])
     groups |= {"0.35 m at 20 s": hole, "all but these": ~hole}
     return {name: found[rows] for name, rows in groups.items()}
+
+
+def hard() -> dict[str, np.ndarray]:
+    """Errors on eight walks each of a gyro without noise that drifts."""
+    ways, groups = tuple(WANDER.values()), {}
+    for name, make in (("steady bias", steady_bias), ("cooling on a curve", cooling_on_a_curve)):
+        walks = [make(seed) for seed in range(1, 9)]
+        groups[name] = np.array([errors(feet, feet.heading - drifted, ways) for feet, drifted in walks])
+    return groups
 
 
 def made_up(case: Case) -> np.ndarray:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.papers import ihde_hypotheses
-from benchmarks.validation import hypotheses_figures, hypotheses_wander, hypotheses_ways
+from benchmarks.validation import _hard_feet, hypotheses_figures, hypotheses_wander, hypotheses_ways
 from benchmarks.validation.hypotheses_wander import Case, harm, walked
 from footfall.hdr.hypotheses.filter import Beliefs
 
@@ -102,3 +102,15 @@ def test_a_cell_of_ways_tells_errors_and_who_is_worse_than_uncorrected():
     found = np.stack([none, way], axis=1)
     assert hypotheses_ways.told(found, 0) == "3.0 / 5.0; 3.8"
     assert hypotheses_ways.told(found, 1) == "2.0 / 2.5; 2.9; 50 / 0 %; 2.5"
+
+
+@pytest.mark.parametrize("make", [_hard_feet.steady_bias, _hard_feet.cooling_on_a_curve])
+def test_hard_feet_follow_their_path_behind_a_drift_that_is_known(make):
+    feet, drifted = make(3)
+    path = feet.heading - drifted
+    middle = 0.5 * (drifted[1:] + drifted[:-1])
+    course = np.unwrap(np.arctan2(*np.diff(feet.position[:, :2], axis=0).T[::-1])) - middle
+    assert np.abs(np.degrees(course - path[1:])).mean() < 1.5
+    assert np.degrees(drifted[-1]) == pytest.approx(
+        300 * 1.05 * 0.05 if make is _hard_feet.steady_bias else -39.9, rel=0.01
+    )
