@@ -33,6 +33,7 @@ measure perfect footfall run closed-loop --imu perfect --units 0 --noises 0 --me
 measure hdr_table2 python -m benchmarks.papers.hdr_table2 --mounts instep --figure docs/images/hdr_table2.png --page docs/results.md
 measure swaying python -m benchmarks.papers.swaying --page docs/swaying.md --figure docs/images/swaying.png
 measure iez python -m benchmarks.papers.iez_false_bias --page docs/iez.md --figures docs/images
+measure ways python -m benchmarks.papers.iez_ways --page docs/iez.md
 measure ihde python -m benchmarks.papers.ihde_table2 --page docs/ihde.md --figures docs/images
 measure perfect_imu python -m benchmarks.validation.perfect_imu
 measure truth python -m benchmarks.validation.imu_truth

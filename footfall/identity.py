@@ -1,4 +1,4 @@
-"""Who a walk, a recording or a track is: what determines it, in metadata that travels with it.
+"""What determines a walk, a recording or a track, in metadata that travel with it.
 
 A recording carries the identity of its walk, a track that of its recording besides.
 """
@@ -22,13 +22,13 @@ class WalkIdentity:
 
     Attributes
     ----------
-    scenario : its name, which makes none: a copy of a scenario is the same walk
+    scenario : its name, which does not count: a copy of a scenario is the same walk
     scenario_digest : of the whole plan: path geometry, ground, body, mount, gait, stops, paces, pushes, seed
     seed : of the walk
     subject : name of the person
     mount : `name` of the mounting of the IMU and its pose on the shoe
     policy : digest of the walker's weights
-    code : digest of what moves the walker
+    code : digest of the code and the physics engine that move the walker
     """
 
     scenario: str = field(compare=False)
@@ -45,12 +45,12 @@ class WalkIdentity:
 
     @property
     def digest(self) -> str:
-        """Of all that makes it differ."""
+        """SHA-256 (64 hex digits) of all that counts."""
         return digest_of({item.name: getattr(self, item.name) for item in fields(self) if item.compare})
 
     @classmethod
     def of(cls, meta: Mapping[str, Any]) -> WalkIdentity | None:
-        """The identity that a walk's metadata hold, or a recording's or track's of theirs; None without."""
+        """The identity in the metadata of a walk, or of a recording or track of it; None where not told."""
         told = meta.get(WALK, meta)
         if not isinstance(told, Mapping) or any(item.name not in told for item in fields(cls)):
             return None

@@ -1,7 +1,7 @@
 """What notebooks show of Footfall's tables: pandas, HTML and figures. Nothing here changes a number.
 
 A class that is shown has columns with units, and draws itself; pandas and matplotlib are loaded when they are
-asked for. A `Walk` is shown by the functions `to_pandas` and `plot`, as everything else is.
+asked for.
 """
 
 from __future__ import annotations
@@ -13,8 +13,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-
-from footfall.columns import ACCEL, GYRO, POSITION, QUATERNION, VELOCITY, WALK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,8 +38,21 @@ class Shown:
         raise NotImplementedError
 
     def to_pandas(self) -> Any:
-        """A pandas DataFrame of the columns; `attrs` holds `units` by column, and `meta`."""
-        return to_pandas(self)
+        """The columns as a table of pandas.
+
+        Returns
+        -------
+        DataFrame
+            `attrs` holds `units` by column, and `meta` where there is some.
+        """
+        import pandas
+
+        units = self._units()
+        frame = pandas.DataFrame(self._columns())
+        frame.attrs["units"] = {name: units[name] for name in frame.columns if units.get(name)}
+        if meta := getattr(self, "meta", None):
+            frame.attrs["meta"] = dict(meta)
+        return frame
 
     def plot(self) -> Any:
         """Draw it in a new figure of pyplot, in Footfall's style.
@@ -50,49 +61,11 @@ class Shown:
         -------
         Its axes, as matplotlib gives them.
         """
-        return plot(self)
+        with styled():
+            return self._draw()
 
     def _repr_html_(self) -> str:
         return table_html(type(self).__name__, self._columns(), self._units())
-
-
-def to_pandas(shown: Any) -> Any:
-    """A pandas DataFrame of a recording, a track, a walk or rows of scores.
-
-    Parameters
-    ----------
-    shown : Recording, Track, Walk, Rows, ...
-
-    Returns
-    -------
-    DataFrame
-        `attrs` holds `units` by column, and `meta` where there is some.
-    """
-    import pandas
-
-    columns, units = (
-        (shown._columns(), shown._units()) if isinstance(shown, Shown) else (walk_columns(shown), WALK)
-    )
-    frame = pandas.DataFrame(columns)
-    frame.attrs["units"] = {name: units[name] for name in frame.columns if units.get(name)}
-    if meta := getattr(shown, "meta", None):
-        frame.attrs["meta"] = dict(meta)
-    return frame
-
-
-def plot(shown: Any) -> Any:
-    """Draw a recording, a track, a walk or rows of scores in a new figure of pyplot, in Footfall's style.
-
-    Parameters
-    ----------
-    shown : Recording, Track, Walk, Rows, ...
-
-    Returns
-    -------
-    Its axes, as matplotlib gives them.
-    """
-    with styled():
-        return shown._draw() if isinstance(shown, Shown) else _draw_walk(shown)
 
 
 @contextmanager
@@ -157,22 +130,8 @@ def draw_way(axis: Axes, x: np.ndarray, y: np.ndarray, **line: Any) -> None:
     axis.set_ylabel("y (m)")
 
 
-def walk_columns(walk: Any) -> dict[str, np.ndarray]:
-    """The columns of a walk's file (docs/files.md)."""
-    triads = (
-        (POSITION, walk.position),
-        (QUATERNION, walk.quaternion),
-        (VELOCITY, walk.velocity),
-        (GYRO, walk.gyro),
-        (ACCEL, walk.accel),
-    )
-    columns = {"t": walk.t}
-    for names, values in triads:
-        columns |= dict(zip(names, values.T, strict=True))
-    return columns | {"contact": walk.contact, "stance": walk.stance}
-
-
-def _draw_walk(walk: Any) -> np.ndarray:
+def draw_walk(walk: Any) -> np.ndarray:
+    """The truth of a walk, in a new figure: its footfalls from above, and two strides of a perfect IMU."""
     from matplotlib import pyplot
 
     figure = pyplot.figure(figsize=(8, 5.5))

@@ -10,6 +10,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -216,7 +217,10 @@ def _after(said: str) -> str:
 
 def _end(process: subprocess.Popen[bytes]) -> None:
     """End it and all that it has started."""
-    with contextlib.suppress(OSError, AttributeError):  # Windows has no groups
-        os.killpg(process.pid, signal.SIGKILL)
+    with contextlib.suppress(OSError):
+        if sys.platform == "win32":  # has no groups of processes
+            subprocess.run(["taskkill", "/F", "/T", "/PID", str(process.pid)], capture_output=True)
+        else:
+            os.killpg(process.pid, signal.SIGKILL)
     process.kill()
     process.wait()

@@ -16,7 +16,7 @@ def bilinear(heights, x0, y0, cell, x, y):  # type: ignore[no-untyped-def]
     rows, columns = heights.shape
     height, gradient = np.empty(len(x)), np.empty((len(x), 2))
     for k in range(len(x)):
-        # A walker that is not finite is somewhere: it falls for another reason.
+        # A place that is not finite gets the grid's corner: such a walker counts as fallen anyway.
         u = min(max((x[k] - x0) / cell, 0.0), columns - 1.001) if np.isfinite(x[k]) else 0.0
         v = min(max((y[k] - y0) / cell, 0.0), rows - 1.001) if np.isfinite(y[k]) else 0.0
         i, j = int(u), int(v)

@@ -14,7 +14,7 @@ SHOE = (0.92, 0.92, 0.95, 1.0)
 def add_look(
     body: mujoco.MjsBody, start: list[float], end: list[float], radius: float, rgba: tuple[float, ...]
 ) -> None:
-    """A capsule that is only seen."""
+    """A capsule that is only drawn."""
     body.add_geom(
         type=mujoco.mjtGeom.mjGEOM_CAPSULE,
         fromto=[*start, *end],

@@ -8,6 +8,7 @@ ground contact acts.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -100,7 +101,7 @@ def build_body(
     build: Build,
     *,
     timestep: float,
-    mount: Mount | None = None,
+    mounts: Sequence[Mount] = (),
     sloping: bool = False,
     looks: bool = False,
     scenery: Ground | None = None,
@@ -110,11 +111,12 @@ def build_body(
     Parameters
     ----------
     timestep : s
-    mount : adds sensors `imu_pos`, `imu_quat` (of the IMU site) after the control sensors
-    sloping : each foot treads on a plane of its own, which `simulate.ground.tread` lays under it; else both
-        on one level plane
-    looks : with what is only seen; the physics is the same to the last bit, and 5 % slower
-    scenery : a heightfield to look at; nothing touches it
+    mounts : of IMUs: each adds a site `imu_K` and sensors `imu_K_pos`, `imu_K_quat` after those of control.
+        A site weighs nothing: the steps are the same to the last bit, however many there are
+    sloping : each foot treads on a plane of its own, which `models.ground.tread` lays under it; else both on
+        one level plane
+    looks : adds what is only drawn; the physics is the same to the last bit, and 5 % slower
+    scenery : a heightfield that is only drawn
     """
     spec = mujoco.MjSpec()
     spec.modelname = "footfall walker"
@@ -166,7 +168,7 @@ def build_body(
         actuator.set_to_position(kp=servo.kp, kv=servo.kv)
         actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
         actuator.forcerange = [servo.low, servo.high]
-    _add_sensors(spec, mount)
+    _add_sensors(spec, mounts)
     if not looks:
         for geom in [one for one in spec.geoms if not (one.contype or one.conaffinity)]:
             spec.delete(geom)
@@ -224,7 +226,7 @@ def _add_ground(spec: mujoco.MjSpec, build: Build, sloping: bool) -> None:
 
 
 def _add_scenery(spec: mujoco.MjSpec, ground: Ground) -> None:
-    """A heightfield that is only seen."""
+    """A heightfield that is only drawn."""
     rows, columns = ground.heights.shape
     low, high = float(ground.heights.min()), float(ground.heights.max())
     span = max(high - low, 1e-3)
@@ -341,11 +343,15 @@ SENSOR_FOOT_POSITION = slice(0, 6)  # right, left foot body (m)
 SENSOR_FOOT_VELOCITY = slice(6, 12)
 SENSOR_FOOT_RATE = slice(12, 18)
 SENSOR_TOUCH = slice(18, 24)  # heel, ball, toe: right, left (N)
-SENSOR_IMU_POSITION = slice(24, 27)
-SENSOR_IMU_QUATERNION = slice(27, 31)
+N_SENSOR = SENSOR_TOUCH.stop  # without IMUs
 
 
-def _add_sensors(spec: mujoco.MjSpec, mount: Mount | None) -> None:
+def sensor_imu(k: int) -> slice:
+    """Where the pose of IMU number `k` (from 0) stands: position (3) m, quaternion (4), scalar first."""
+    return slice(N_SENSOR + 7 * k, N_SENSOR + 7 * (k + 1))
+
+
+def _add_sensors(spec: mujoco.MjSpec, mounts: Sequence[Mount]) -> None:
     body, site, kind = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_SITE, mujoco.mjtSensor
     for quantity in (kind.mjSENS_FRAMEPOS, kind.mjSENS_FRAMELINVEL, kind.mjSENS_FRAMEANGVEL):
         for side in "rl":
@@ -353,17 +359,18 @@ def _add_sensors(spec: mujoco.MjSpec, mount: Mount | None) -> None:
     for side in "rl":
         for part in ("heel", "ball", "toe"):
             spec.add_sensor(type=kind.mjSENS_TOUCH, objtype=site, objname=f"{part}_{side}")
-    if mount is None:
-        return
-    quaternion = np.zeros(4)
-    mujoco.mju_euler2Quat(quaternion, np.radians(mount.euler_deg[::-1]), "zyx")
-    spec.body(f"foot_{mount.foot[0]}").add_site(
-        name="imu",
-        pos=list(mount.position),
-        quat=quaternion,
-        type=mujoco.mjtGeom.mjGEOM_BOX,
-        size=[0.022, 0.012, 0.007],  # the nIMU's 45 x 23 x 13 mm
-        rgba=[0.1, 0.5, 0.9, 1],
-    )
-    spec.add_sensor(name="imu_pos", type=kind.mjSENS_FRAMEPOS, objtype=site, objname="imu")
-    spec.add_sensor(name="imu_quat", type=kind.mjSENS_FRAMEQUAT, objtype=site, objname="imu")
+    for k, mount in enumerate(mounts):
+        name, quaternion = f"imu_{k}", np.zeros(4)
+        mujoco.mju_euler2Quat(quaternion, np.radians(mount.euler_deg[::-1]), "zyx")
+        # A foot's origin is its ankle, a shank's the knee: the foot hangs at its ankle.
+        ankle = np.zeros(3) if mount.segment == "foot" else spec.body(f"foot_{mount.foot[0]}").pos
+        spec.body(f"{mount.segment}_{mount.foot[0]}").add_site(
+            name=name,
+            pos=ankle + mount.position,
+            quat=quaternion,
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            size=[0.022, 0.012, 0.007],  # the nIMU's 45 x 23 x 13 mm
+            rgba=[0.1, 0.5, 0.9, 1],
+        )
+        spec.add_sensor(name=f"{name}_pos", type=kind.mjSENS_FRAMEPOS, objtype=site, objname=name)
+        spec.add_sensor(name=f"{name}_quat", type=kind.mjSENS_FRAMEQUAT, objtype=site, objname=name)

@@ -1,7 +1,7 @@
 """The ground under a walker: its height and gradient, and the plane that each foot treads on.
 
-A heightfield under the feet would cost MuJoCo half as much again as level ground, and triangles have edges.
-A foot is short beside the bends of any street: where it treads, the ground is its tangent plane.
+A heightfield under the feet would make the physics half as slow again, and its triangles have edges. A foot
+is short compared with the curves of any street, so it treads on the tangent plane of the ground below it.
 """
 
 from __future__ import annotations

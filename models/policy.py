@@ -16,7 +16,7 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.models._policy_kernels import perceptron
 
-_GAINS = (32,)  # of the balance feedback: simulate.feedback
+_GAINS = (32,)  # of the balance feedback: simulate.walker.feedback
 
 
 @dataclass(frozen=True)

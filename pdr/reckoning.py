@@ -16,6 +16,7 @@ import numpy as np
 from footfall.conventions import BIAS_TIME, heading_of
 from footfall.errors import InputError
 from footfall.late import late
+from footfall.pdr.attitude import quaternion_of, turned
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.rest import Rest, static_bias
 from footfall.pdr.stance import Detector, StanceParams, Stances, ThresholdDetector, compact, find_stances
@@ -23,8 +24,6 @@ from footfall.pdr.strapdown import ORIGIN
 from footfall.pdr.strides import Strides, Sums, integrals, strides_of
 from footfall.recording import Recording
 from footfall.settings import require, setting
-
-transform = late("scipy.spatial.transform")
 
 _detection, _kernels = late("footfall.pdr._detection"), late("footfall.pdr._kernels")
 
@@ -116,8 +115,7 @@ def level_attitude(force: np.ndarray) -> np.ndarray:
             "recording",
         )
     forward /= level
-    rotation = transform.Rotation.from_matrix(np.array([forward, np.cross(up, forward), up]))
-    return np.asarray(rotation.as_quat(scalar_first=True))
+    return quaternion_of(np.array([forward, np.cross(up, forward), up]))
 
 
 def dead_reckon(
@@ -187,8 +185,7 @@ def placed(
     Stamps (n,), attitudes (n, 4) and positions (n, 3). Between the rest and row 0 the foot may turn on the
     ground, more slowly than any detector tells from rest: row 0 is where that leaves it.
     """
-    turn = transform.Rotation.from_rotvec([0.0, 0.0, start.heading])
-    position = turn.apply(position) + np.asarray(start.position)
+    position = turned(position, start.heading) + np.asarray(start.position)
     return replace(Footfalls.at(t, position, heading_of(quaternion) + start.heading), strides=strides)
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 import tempfile
 import threading
-from collections.abc import Callable, Collection, Generator, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager
@@ -53,10 +54,11 @@ class Progress:
 
 @dataclass(frozen=True)
 class Group:
-    """Trials that share a walk, and which of all they are."""
+    """Trials that share a walk, and which of all they are; `steps` of the walk (`Plan.steps`)."""
 
     trials: list[Trial] = field(default_factory=list)
     index: list[int] = field(default_factory=list)
+    steps: str = ""
 
 
 class _Places(NamedTuple):
@@ -113,8 +115,10 @@ def grouped(trials: Sequence[Trial]) -> dict[str, Group]:
         # Plans are big: each is hashed once, not once a trial.
         short = (id(trial.setup.scenario), trial.number, trial.walk_seed)
         if short not in keys:
-            keys[short] = plan_key(trial.plan, policy)
-        group = groups.setdefault(keys[short], Group())
+            plan = trial.plan
+            keys[short] = plan_key(plan, policy), plan.steps
+        key, steps = keys[short]
+        group = groups.setdefault(key, Group(steps=steps))
         group.trials.append(trial)
         group.index.append(index)
     return groups
@@ -152,7 +156,8 @@ def _here(
             progress.metres[at] = metres
             report(progress)
 
-        walk = _walk(group.trials[0], places.walks, walked)
+        also = [one.trials[0] for one in work if one.steps == group.steps]
+        walk = _walk(group.trials[0], places.walks, walked, also)
         walked(group.trials[0].plan.route.length)
         for index, trial in zip(group.index, group.trials, strict=True):
             outcome = _one(trial, walk, index in keep, places.footfalls)
@@ -178,8 +183,12 @@ def _spread(
         report(progress)
         warm(work[0].trials[0], walks=to_walk)  # or every worker would compile the same
         progress.compiling = False
-        walking: dict[Future[Any], int] = {
-            pool.submit(_walk_job, at, group.trials[0], places.walks): at for at, group in enumerate(work)
+        alike: dict[str, list[int]] = {}
+        for at, group in enumerate(work):
+            alike.setdefault(group.steps, []).append(at)
+        walking: dict[Future[Any], list[int]] = {
+            pool.submit(_walk_job, ats[0], [work[at].trials[0] for at in ats], places.walks): ats
+            for ats in alike.values()
         }
         trying: set[Future[Any]] = set()
         while walking or trying:
@@ -187,15 +196,15 @@ def _spread(
             ready: list[tuple[int, Outcome]] = []
             for future in finished:
                 if future in walking:
-                    at, refused = walking.pop(future), future.result()
-                    metres[at] = work[at].trials[0].plan.route.length
-                    if refused is not None:
-                        lost = zip(work[at].index, work[at].trials, strict=True)
-                        ready += [(index, failed(trial, refused)) for index, trial in lost]
-                        continue
-                    for part in chunks(work[at]):
-                        kept = [index in keep for index in part.index]
-                        trying.add(pool.submit(_chunk_job, part, kept, places))
+                    for at, refused in zip(walking.pop(future), future.result(), strict=True):
+                        metres[at] = work[at].trials[0].plan.route.length
+                        if refused is not None:
+                            lost = zip(work[at].index, work[at].trials, strict=True)
+                            ready += [(index, failed(trial, refused)) for index, trial in lost]
+                            continue
+                        for part in chunks(work[at]):
+                            kept = [index in keep for index in part.index]
+                            trying.add(pool.submit(_chunk_job, part, kept, places))
                 else:
                     trying.remove(future)
                     ready += [
@@ -214,9 +223,11 @@ def chunks(group: Group) -> Iterator[Group]:
         yield Group(group.trials[part], group.index[part])
 
 
-def _walk(trial: Trial, folder: Path | None, report: Callable[[float], None] | None) -> Walk | InputError:
+def _walk(
+    trial: Trial, folder: Path | None, report: Callable[[float], None] | None, also: Iterable[Trial]
+) -> Walk | InputError:
     try:
-        return walk_of(trial, folder, report)
+        return walk_of(trial, folder, report, also)
     except InputError as error:
         return error
 
@@ -227,11 +238,14 @@ def _one(trial: Trial, walk: Walk | InputError, keep: bool, store: Path | None) 
     return perform(trial, walk, keep=keep, store=store)
 
 
-def _walk_job(at: int, trial: Trial, folder: Path | None) -> InputError | None:
-    """In a worker: see that the walk is in the cache, or tell why it came to no end."""
-
-    walk = hold(trial, folder, telling(at))
-    return walk if isinstance(walk, InputError) else None
+def _walk_job(at: int, trials: Sequence[Trial], folder: Path | None) -> list[InputError | None]:
+    """In a worker: see that walks of the same steps are in the cache, or tell why each came to no end."""
+    found: list[InputError | None] = []
+    for trial in trials:
+        # Where one did not come to its end, neither do the others.
+        walk = next(filter(None, found), None) or hold(trial, folder, telling(at), trials)
+        found.append(walk if isinstance(walk, InputError) else None)
+    return found
 
 
 def telling(at: int) -> Callable[[float], None]:
@@ -244,14 +258,20 @@ def telling(at: int) -> Callable[[float], None]:
 
 
 def hold(
-    trial: Trial, folder: Path | None, report: Callable[[float], None] | None = None
+    trial: Trial,
+    folder: Path | None,
+    report: Callable[[float], None] | None = None,
+    also: Iterable[Trial] = (),
 ) -> Walk | InputError:
-    """The trial's walk, read once for all trials that follow each other on it; or why there is none."""
+    """The trial's walk, read once for all trials that follow each other on it; or why there is none.
+
+    `also` as of `walk_of`.
+    """
     global _held
     key = (trial.walk_seed, plan_key(trial.plan, stock_policy()))
     if _held is None or _held[0] != key:
         _held = None  # two walks at once would be too much
-        _held = key, _walk(trial, folder, report)
+        _held = key, _walk(trial, folder, report, also)
     return _held[1]
 
 
@@ -302,16 +322,28 @@ def _interrupt_held() -> Iterator[None]:
     """
     main = threading.current_thread() is threading.main_thread()
     held: list[int] = []
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     before = signal.signal(signal.SIGINT, lambda number, frame: held.append(number)) if main else None
     try:
-        yield
+        with _interrupt_masked():
+            yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         if before is not None:
             signal.signal(signal.SIGINT, before)
         if held:
             signal.raise_signal(signal.SIGINT)
+
+
+@contextmanager
+def _interrupt_masked() -> Iterator[None]:
+    """SIGINT waits where threads have masks."""
+    if sys.platform == "win32":
+        yield
+        return
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
 @contextmanager

@@ -248,7 +248,10 @@ def reckoning(setup: Setup, walk: Walk, recording: Recording) -> Reckoning:
 
 
 def walk_of(
-    trial: Trial, folder: Path | None = None, on_progress: Callable[[float], None] | None = None
+    trial: Trial,
+    folder: Path | None = None,
+    on_progress: Callable[[float], None] | None = None,
+    also: Iterable[Trial] = (),
 ) -> Walk:
     """The trial's walk, from the cache where it has been walked before.
 
@@ -256,6 +259,7 @@ def walk_of(
     ----------
     folder : the cache; the user's when None
     on_progress : called now and then with the metres walked
+    also : trials whose walks differ in mount and rate alone, kept as well where there is to be walked
 
     Raises
     ------
@@ -265,7 +269,7 @@ def walk_of(
     # Late: the physics, which documents and settings do without.
     from footfall.simulate.cache import cached_walk
 
-    return cached_walk(trial.plan, folder=folder, on_progress=on_progress)
+    return cached_walk(trial.plan, also=(one.plan for one in also), folder=folder, on_progress=on_progress)
 
 
 def recording_of(trial: Trial, walk: Walk) -> Recording:

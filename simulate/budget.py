@@ -39,11 +39,11 @@ class DriftBudget:
 def drift_budget(walk: Walk, signals: Iterable[tuple[str, np.ndarray]], bias_time: float) -> DriftBudget:
     """Drift of each stride between true footfalls.
 
-    Every stride starts from the true attitude, as if the accelerometers had just mended the tilt. The gyro
+    Every stride starts from the true attitude, as if the accelerometers had just corrected the tilt. The gyro
     signal after each effect, less its static bias, is integrated over the stride; the vertical component of
     the rotation by which it ends off the truth, over the stride's duration, is its drift. A cause's share is
     the difference that its effect makes. (A plain mean of rate errors turned into the world by the true
-    attitude would be the same to first order, but books the pure delay of the sensor's low-pass as drift.)
+    attitude would be the same to first order, but counts the pure delay of the sensor's low-pass as drift.)
 
     Parameters
     ----------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -55,11 +55,13 @@ def plan_key(plan: Plan, policy: Policy) -> str:
     return digest_of(_versions(), stage_digest("walk"), policy.digest, plan.digest)[:32]
 
 
-def walk(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | None) -> Walk:
-    """`footfall.simulate.walking.walk`: the physics are loaded where something is to be walked."""
+def walks(
+    plans: Sequence[Plan], policy: Policy, on_progress: Callable[[float], None] | None
+) -> Iterator[Walk]:
+    """`footfall.simulate.walking.walks`: the physics are loaded where something is to be walked."""
     from footfall.simulate import walking
 
-    return walking.walk(plan, policy, on_progress)
+    return walking.walks(plans, policy, on_progress)
 
 
 def is_cached(key: str, folder: Path | None = None) -> bool:
@@ -70,6 +72,7 @@ def is_cached(key: str, folder: Path | None = None) -> bool:
 def cached_walk(
     plan: Plan,
     *,
+    also: Iterable[Plan] = (),
     folder: Path | None = None,
     policy: Policy | None = None,
     on_progress: Callable[[float], None] | None = None,
@@ -81,6 +84,8 @@ def cached_walk(
 
     Parameters
     ----------
+    also : plans that differ in mount and rate alone: where this one has to be walked, their truths are read
+        of the same steps and kept, too
     folder : of the cache; the user's when None
     on_progress : as of `walk`
     on_wait : called once where another process is walking this plan
@@ -91,14 +96,21 @@ def cached_walk(
         As `walk`; or the folder cannot be written, which is told before walking.
     """
     policy = policy or stock_policy()
-    path = _file(plan_key(plan, policy), folder)
+    key = plan_key(plan, policy)
+    path = _file(key, folder)
     found = _read(path)
     if found is None:
         with _alone(path, on_wait):
             found = _read(path)
             if found is None:
-                found = walk(plan, policy, on_progress)
+                others = {other: one for one in also if (other := plan_key(one, policy)) != key}
+                missing = {other: one for other, one in others.items() if not is_cached(other, folder)}
+                truths = walks([plan, *missing.values()], policy, on_progress)
+                found = next(truths)
                 write_walk(found, path)
+                with suppress(InputError):  # of another truth: it is told when that is asked for
+                    for other, truth in zip(missing, truths, strict=True):
+                        keep_walk(other, truth, folder)
     # Another scenario of the same content may have walked it.
     return replace(found, meta={**found.meta, "scenario": plan.name})
 
@@ -178,7 +190,7 @@ def _alone(path: Path, on_wait: Callable[[], None] | None) -> Iterator[None]:
     try:
         yield
     finally:
-        # Whoever waits for this file's lock finds the walk; whoever comes later needs none.
+        # A process that waits for this lock finds the walk; a later one needs no lock.
         with suppress(OSError):
             path.with_suffix(".lock").unlink()
         lock.release()
@@ -200,7 +212,7 @@ def _entry(file: Path) -> CachedWalk | None:
 
 
 def _sweep(folder: Path) -> None:
-    """Remove what processes that were killed have left: locks that nobody holds, and files half written."""
+    """Remove what killed processes have left: locks that no process holds, and files half written."""
     from filelock import FileLock, Timeout
 
     for file in folder.glob("*.lock"):
@@ -213,6 +225,6 @@ def _sweep(folder: Path) -> None:
 
 
 def _remove(file: Path) -> None:
-    """The walk first: footfalls without one are found by nobody."""
+    """The walk first: footfalls alone are never read."""
     for part in (file, footfalls_path(file)):
         part.unlink(missing_ok=True)

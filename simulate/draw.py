@@ -1,4 +1,4 @@
-"""What is seen of a walk: the walker, the path that it follows and its footprints, drawn or in a window.
+"""Drawing of a walk: the walker, the path that it follows and its footprints, as pictures or in a window.
 
 Everything here is in the units of the simulated body (models.subject). GL is loaded when something is drawn.
 """
@@ -67,7 +67,7 @@ class Stage:
         self.model = model = build_body(
             build,
             timestep=walkers.models[0].opt.timestep,
-            mount=None if plan is None else plan.mount,
+            mounts=() if plan is None else (plan.mount,),
             sloping=patch is not None,
             looks=True,
             scenery=patch,
@@ -81,7 +81,7 @@ class Stage:
         self.data = mujoco.MjData(model)
         self._dashes = None if plan is None else _dashes(plan.route)
         self._prints: deque[tuple[str, np.ndarray, np.ndarray]] = deque(maxlen=_PRINTS)
-        imu = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, "imu")
+        imu = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, "imu_0")
         self._imu = imu
         self._instrumented = "" if imu < 0 else model.body(model.site_bodyid[imu]).name[-1]
         self.update()
@@ -138,7 +138,7 @@ class Stage:
 
     def decorate(self, scene: Any) -> None:
         """Add the line and the prints to a MuJoCo scene."""
-        if self._imu >= 0:  # the box on the shoe is small: it is drawn larger
+        if self._imu >= 0:  # the IMU is small: its box is drawn larger
             _add_box(scene, (0.034, 0.024, 0.016), self.data.site(self._imu), _IMU_RGBA)
         if self._dashes is not None:
             middle, heading, slope = self._dashes
@@ -218,8 +218,8 @@ def has_screen() -> bool:
 class Painter:
     """Pictures of a stage, without a window.
 
-    MuJoCo chooses what draws (the environment variable MUJOCO_GL tells it); where nothing is told and there
-    is no screen, EGL does.
+    MuJoCo chooses the renderer by the environment variable MUJOCO_GL; where that is not set and there is no
+    screen, it is EGL.
 
     Raises
     ------
@@ -280,7 +280,7 @@ def _gl_context(width: int, height: int) -> Any:
 
 
 class Window:
-    """MuJoCo's viewer on a stage, at the pace of the clock; its user may see it from anywhere.
+    """MuJoCo's viewer on a stage, in real time; the view can be moved with the mouse.
 
     Parameters
     ----------

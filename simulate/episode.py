@@ -1,8 +1,8 @@
-"""A plan on its way, control step by control step: stand, walk the route and stand."""
+"""A plan walked control step by control step: stand, walk the route and stand."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from footfall.errors import InputError
 from footfall.models.body import build_body
 from footfall.models.ground import ground_lookup
+from footfall.models.mount import Mount
 from footfall.models.policy import Policy
 from footfall.simulate.plan import PHYSICS_STEP, Plan, Stop, shrunk
 from footfall.simulate.walker.disturbance import Push, Pusher, pushes
@@ -29,7 +30,7 @@ class FallError(InputError):
 
 
 class Episode:
-    """A plan on its way: one steered walker, which stands, walks the route and stands.
+    """A plan being walked: one steered walker, which stands, walks the route and stands.
 
     Take a control step with `walkers.step`, then `steer`, until it has `finished`.
 
@@ -37,18 +38,22 @@ class Episode:
     ----------
     gains : (32,) of the balance feedback
     stand : s before the first step
+    mounts : of the IMUs; the plan's when None
 
     Attributes
     ----------
     plan : in the units of the walker; walkers : of one, in the same
-    limit : control steps within which anything but a walker that is stuck has finished
+    limit : control steps after which a walker that has not finished is stuck
     """
 
-    def __init__(self, plan: Plan, gains: np.ndarray, *, stand: float) -> None:
+    def __init__(
+        self, plan: Plan, gains: np.ndarray, *, stand: float, mounts: Sequence[Mount] | None = None
+    ) -> None:
         subject, gait, small = plan.subject, plan.gait, shrunk(plan)
         route, step = small.route, PHYSICS_STEP / subject.time_scale
         sloping = small.ground is not None
-        model = build_body(subject.build, timestep=step, mount=plan.mount, sloping=sloping)
+        worn = (plan.mount,) if mounts is None else mounts
+        model = build_body(subject.build, timestep=step, mounts=worn, sloping=sloping)
         self.plan, self._scale = small, subject.scale
         self.walkers = Walkers(
             [model],
@@ -95,7 +100,7 @@ class Episode:
 
     @property
     def ending(self) -> bool:
-        """The path has been walked: only to stop is left."""
+        """The path has been walked; only the stop is left."""
         return self._pursuit.ending
 
     def steer(self) -> None:
@@ -127,12 +132,15 @@ class Moment:
     episode: Episode
 
 
-def stroll(plan: Plan, policy: Policy, *, stand: float | None = None) -> Iterator[Moment]:
+def stroll(
+    plan: Plan, policy: Policy, *, stand: float | None = None, mounts: Sequence[Mount] | None = None
+) -> Iterator[Moment]:
     """Stand, walk the route and stand, one control step at a time.
 
     Parameters
     ----------
-    stand : s before the first step; what a record wants when None
+    stand : s before the first step; that of a record when None
+    mounts : of the IMUs; the plan's when None
 
     Raises
     ------
@@ -141,9 +149,9 @@ def stroll(plan: Plan, policy: Policy, *, stand: float | None = None) -> Iterato
     """
     noise, at = stream(plan.seed, "action noise"), 0.0
     stand = STAND_S + plan.calibration_s if stand is None else stand
-    episode = Episode(plan, policy.feedback_gains, stand=stand)
+    episode = Episode(plan, policy.feedback_gains, stand=stand, mounts=mounts)
     walkers, interval = episode.walkers, SUBSTEPS * PHYSICS_STEP
-    # The simulated body weighs something else, and its speeds are the subject's over `time_scale`.
+    # The simulated body has another mass, and its speeds are the subject's over `time_scale`.
     share = float(sum(walkers.models[0].body_mass)) / plan.subject.mass_kg
     pusher = Pusher(planned_pushes(plan, episode.limit * interval), start=STAND_S)
     try:

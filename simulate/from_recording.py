@@ -1,4 +1,4 @@
-"""A real recording as another IMU would have drifted on the same foot."""
+"""Errors of another IMU added to a real recording."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from footfall.models.imu import EFFECTS, ROOM, ImuUnit, TemperatureProfile, requ
 from footfall.models.imu.effects import Channel, sensed
 from footfall.recording import Recording
 
-# What makes a heading drift and can be laid on top. The rest a real recording has already: its sensor's scale
-# and alignment, bandwidth, noise, range and resolution, which a second time would be those of no sensor.
+# Effects that make a heading drift and can be added. A real recording has the others already: its sensor's
+# scale and alignment, bandwidth, noise, range and resolution. Added twice they would be those of no sensor.
 ADDED = ("g_sensitivity", "g2", "temperature", "turn_on", "flicker", "rate_random_walk")
 
 
@@ -27,8 +27,8 @@ def add_errors(
 ) -> Recording:
     """`recording` with the biases, temperature errors and g-sensitivity of `unit` (`ADDED`) on top.
 
-    The unit's axes are those of the recording, and its force is what the recording says, noise included.
-    What the recording's own sensor drifts stays in: judge by a recording whose track is good as it is.
+    The unit's axes are those of the recording, and its force is the recorded one, noise included. The drift
+    of the recording's own sensor stays in, so use a recording whose track is good as it is.
 
     Parameters
     ----------

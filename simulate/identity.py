@@ -1,4 +1,4 @@
-"""Which walk it is: the identity of a plan, walked by these weights and this code."""
+"""The identity of the walk that a plan, the walker's weights and this code make."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ class Pace:
 
 @dataclass(frozen=True)
 class Disturbance:
-    """Pushes at the trunk of `push_Ns` into random horizontal directions, one `every_s`."""
+    """Pushes of `push_Ns` (N s) at the trunk in random horizontal directions, one each `every_s` (s)."""
 
     push_Ns: float
     every_s: float = 10.0
@@ -73,7 +73,7 @@ class Plan:
     route : where to walk; ground : level when None
     paces : changes of the gait's pace on the way, in walking order
     stops : pauses on the way, in walking order
-    disturbance : pushes from the first step on, the only external force there can be; none when None
+    disturbance : pushes from the first step on, the only possible external force; none when None
     calibration_s : of standing before the first step
     rate_hz : of the truth; divides 1 kHz
     """
@@ -92,15 +92,20 @@ class Plan:
     seed: int = 1
 
     @cached_property
+    def steps(self) -> str:
+        """SHA-256 of what decides the steps: all but name, mount and rate, which the body does not feel."""
+        return digest_of(replace(self, name="", mount=Mount(), rate_hz=0.0))
+
+    @cached_property
     def digest(self) -> str:
         """SHA-256 of all of it but the name: a copy of a scenario is the same walk."""
-        return digest_of(replace(self, name=""))
+        return digest_of(self.steps, self.mount, self.rate_hz)
 
 
 def shrunk(plan: Plan) -> Plan:
     """The plan in the units of the simulated body (models.subject): lengths over s, times over sqrt(s).
 
-    What the record alone asks for (`calibration_s`, `rate_hz`, pushes) stays as it is.
+    What concerns the record alone (`calibration_s`, `rate_hz`, pushes) stays as it is.
     """
     s, t = plan.subject.scale, plan.subject.time_scale
     route, ground, gait = plan.route, plan.ground, plan.gait

@@ -28,7 +28,7 @@ def record(
     without: Collection[str] = (),
     bias_shift: float = 0.0,
 ) -> Recording:
-    """What `unit` says of `walk`, sample for sample at the walk's rate.
+    """What `unit` measures on `walk`, sample by sample at the walk's rate.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def record(
     without : names of effects to switch off (`footfall.models.imu.EFFECTS`), in gyros and accelerometers;
         the random draws of the others stay as they are
     bias_shift : rad/s, a gyro bias about the vertical (left positive) of the standing IMU that appears when
-        the motionless start is over: no average over that can remove it
+        the motionless start is over: no average over the start can remove it
 
     Raises
     ------

@@ -21,7 +21,6 @@ from footfall.tables import replacing
 STRIP_FRAMES, STRIP_EVERY = 7, 5  # control steps
 _WIDTH, _HEIGHT = 560, 420
 _STRIP_WIDTH = 240
-_POSE = slice(body.SENSOR_IMU_POSITION.start, body.SENSOR_IMU_QUATERNION.stop)
 _STAND_S = 1.0  # before the first step; a record wants more
 
 
@@ -34,7 +33,7 @@ def render(
     ----------
     skip : s after the first step at which the pictures begin
     seconds : s shown (of a strip: 7 pictures 0.15 s apart)
-    signals : what the IMU says beside a moving picture, as it goes on
+    signals : whether a moving picture shows the IMU's signals beside the walker
 
     Returns
     -------
@@ -136,6 +135,6 @@ def _scenes(plan: Plan) -> Iterator[tuple[Stage, float, np.ndarray]]:
         stage = stage or Stage(moment.walkers, moment.episode.plan.subject.build, moment.episode)
         stage.update()
         strode += CONTROL_INTERVAL * bool(moment.walkers.gate.value[0] > 0)
-        pose = moment.trace.sensor[0, :, _POSE].copy()
+        pose = moment.trace.sensor[0, :, body.sensor_imu(0)].copy()
         pose[:, :3] *= plan.subject.scale
         yield stage, strode, pose

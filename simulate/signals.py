@@ -1,4 +1,4 @@
-"""What the IMU on the drawn walker says, as a picture beside it that is uncovered as the walk goes on."""
+"""The IMU's signals as a picture beside the drawn walker, uncovered as the walk goes on."""
 
 from __future__ import annotations
 

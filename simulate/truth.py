@@ -30,7 +30,7 @@ _BRIDGED_GAP_S = 0.04
 
 @dataclass(frozen=True)
 class ImuTruth:
-    """Poses on the output grid and what a perfect IMU says over the interval that ends at each.
+    """Poses on the output grid and what a perfect IMU measures over the interval that ends at each.
 
     `index` (n,) are the rows of the physics record that the output rows stand on.
     """
@@ -59,7 +59,7 @@ def divisor(physics_step: float, rate_hz: float) -> int:
 
 
 def imu_truth(position: np.ndarray, quaternion: np.ndarray, physics_step: float, factor: int) -> ImuTruth:
-    """What a perfect IMU on this motion says.
+    """What a perfect IMU on this motion measures.
 
     Parameters
     ----------
@@ -93,7 +93,18 @@ def imu_truth(position: np.ndarray, quaternion: np.ndarray, physics_step: float,
 
 
 def at_rest(truth: ImuTruth, contact: np.ndarray, interval: float) -> np.ndarray:
-    """(n,) bool: the instrumented foot is on the ground at rest; runs shorter than 60 ms do not count."""
+    """When a foot is on the ground at rest; runs shorter than 60 ms do not count.
+
+    Parameters
+    ----------
+    truth : of a place on the foot, n samples
+    contact : (n,) body weights on it
+    interval : s between samples
+
+    Returns
+    -------
+    (n,) bool
+    """
     slow = np.linalg.norm(truth.velocity, axis=1) < REST_SPEED
     quiet = np.linalg.norm(truth.gyro, axis=1) < REST_RATE
     rest = slow & quiet & (contact > REST_CONTACT)

@@ -1,4 +1,4 @@
-"""The truth of one walk: the IMU's pose, what a perfect IMU says, and the true footfalls."""
+"""The truth of one walk: the IMU's pose, what a perfect IMU measures, and the true footfalls."""
 
 from __future__ import annotations
 
@@ -15,9 +15,8 @@ from footfall.columns import ACCEL, FOOTFALLS, GYRO, PLACE, POSITION, QUATERNION
 from footfall.conventions import heading_of
 from footfall.errors import InputError
 from footfall.identity import content_digest
+from footfall.shown import Shown, draw_walk
 from footfall.tables import Columns, read_table, require_columns, write_table
-
-POSE = (*POSITION, *QUATERNION, *VELOCITY)
 
 
 @dataclass(frozen=True)
@@ -37,7 +36,7 @@ class TrueFootfalls:
 
 
 @dataclass(frozen=True)
-class Walk:
+class Walk(Shown):
     """The truth of one simulated walk at the IMU site. Row 0 is the start pose.
 
     The walker stands for the first `meta["calibration_s"]` seconds, of which the static bias is taken; row 0
@@ -47,7 +46,7 @@ class Walk:
     ----------
     t : (n,) s, evenly spaced, ends of the sampling intervals
     position : (n, 3) m; quaternion : (n, 4) body to world, scalar first; velocity : (n, 3) m/s
-    gyro : (n, 3) rad/s and accel : (n, 3) m/s2: what a perfect IMU says over the interval that ends at t
+    gyro : (n, 3) rad/s and accel : (n, 3) m/s2: what a perfect IMU measures over the interval up to t
     contact : (n,) share of the body weight on the instrumented foot
     stance : (n,) bool, the foot is on the ground at rest
     footfalls : the true footfalls
@@ -84,6 +83,25 @@ class Walk:
             *(self.stance, falls.t, falls.position, falls.heading),
         )
 
+    def _columns(self) -> dict[str, np.ndarray]:
+        triads = (
+            (POSITION, self.position),
+            (QUATERNION, self.quaternion),
+            (VELOCITY, self.velocity),
+            (GYRO, self.gyro),
+            (ACCEL, self.accel),
+        )
+        columns = {"t": self.t}
+        for names, values in triads:
+            columns |= dict(zip(names, values.T, strict=True))
+        return columns | {"contact": self.contact, "stance": self.stance}
+
+    def _units(self) -> Mapping[str, str]:
+        return WALK
+
+    def _draw(self) -> np.ndarray:
+        return draw_walk(self)
+
     def pose_at_rest(self, after_s: float) -> tuple[tuple[float, float, float], float]:
         """Position (m) and heading (rad) of the IMU `after_s` into the motionless start, or at its end."""
         at = min(after_s, float(self.footfalls.t[0] - self.t[0]))
@@ -108,13 +126,9 @@ def write_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
         "z": f.position[:, 2],
         "heading": f.heading,
     }
-    # The footfalls first: whoever finds the walk finds them too.
+    # The footfalls first, so that a walk that is there has its footfalls.
     write_table(footfalls_path(path), columns, FOOTFALLS, walk.meta)
-    pose = np.column_stack([walk.position, walk.quaternion, walk.velocity])
-    columns = {"t": walk.t} | dict(zip(POSE, pose.T, strict=True))
-    columns |= dict(zip(GYRO, walk.gyro.T, strict=True)) | dict(zip(ACCEL, walk.accel.T, strict=True))
-    columns |= {"contact": walk.contact, "stance": walk.stance}
-    write_table(path, columns, WALK, walk.meta, smooth=True)
+    write_table(path, walk._columns(), WALK, walk.meta, smooth=True)
 
 
 def read_walk(path: str | os.PathLike[str]) -> Walk:

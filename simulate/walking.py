@@ -1,17 +1,18 @@
-"""From a plan to the truth of its walk: the physics is recorded, and what a perfect IMU says is worked out.
+"""From a plan to the truth of its walk: poses at every physics step, and what a perfect IMU measures of them.
 
-The physics moves the 1.75 m body (models.subject); what comes out is stretched to the subject.
+The physics moves the 1.75 m body (models.subject); its poses are scaled to the subject.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from footfall.conventions import GRAVITY, heading_of
 from footfall.models import body
+from footfall.models.mount import Mount
 from footfall.models.policy import Policy, stock_policy
 from footfall.models.route import Ground, Route
 from footfall.runs import runs
@@ -24,15 +25,18 @@ from footfall.simulate.walker.steering import StrayError
 
 
 @dataclass(frozen=True)
-class _Record:
-    """The IMU site at every physics step, in the subject's units; contact in body weights.
+class _Motion:
+    """The walker at every physics step, in the subject's units.
 
-    `stands`: the walk ends standing, as it should, and not in mid-gait.
+    Attributes
+    ----------
+    poses : place of an IMU -> (n, 7) its position (m) and quaternion, body to world, scalar first
+    load : foot -> (n,) body weights
+    stands : the walk ends standing, as it should, and not in mid-gait
     """
 
-    position: np.ndarray
-    quaternion: np.ndarray
-    contact: np.ndarray
+    poses: Mapping[Mount, np.ndarray]
+    load: Mapping[str, np.ndarray]
     stands: bool
 
 
@@ -55,21 +59,22 @@ def warm() -> None:
     imu_truth(pose[:, :3], pose[:, 3:], PHYSICS_STEP, 5)
 
 
-def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | None) -> _Record:
-    """Walk, and keep the IMU site and the load on its foot."""
-    first = body.SENSOR_TOUCH.start + (0 if plan.mount.foot == "right" else 3)
-    touch = slice(first, first + 3)
-    pose = slice(body.SENSOR_IMU_POSITION.start, body.SENSOR_IMU_QUATERNION.stop)
-    poses, touches, weight, walked = [], [], 1.0, None
+def _physics(
+    plan: Plan, policy: Policy, mounts: Sequence[Mount], on_progress: Callable[[float], None] | None
+) -> _Motion:
+    """Walk, and keep the poses of the IMUs and the load on the feet."""
+    poses: list[list[np.ndarray]] = [[] for _ in mounts]
+    touches, weight, walked = [], 1.0, None
     try:
-        for count, moment in enumerate(stroll(plan, policy)):
+        for count, moment in enumerate(stroll(plan, policy, mounts=mounts)):
             sensor = moment.trace.sensor[0]
-            poses.append(sensor[:, pose].copy())
-            touches.append(sensor[:, touch].copy())
+            for k, kept in enumerate(poses):
+                kept.append(sensor[:, body.sensor_imu(k)].copy())
+            touches.append(sensor[:, body.SENSOR_TOUCH].copy())
             if count == 0:
                 weight = float(sum(moment.walkers.models[0].body_mass)) * GRAVITY
             if moment.episode.ending and walked is None:
-                walked = len(poses)
+                walked = len(touches)
             if on_progress is not None and count % 100 == 0:
                 on_progress(moment.progress)
         stands = True
@@ -77,19 +82,33 @@ def _physics(plan: Plan, policy: Policy, on_progress: Callable[[float], None] | 
         if walked is None:
             raise
         # It failed to stop after the path was walked: the walk ends in mid-gait, before that.
-        poses, touches, stands = poses[:walked], touches[:walked], False
-    kept = slice(round(STAND_S / PHYSICS_STEP), None)
-    found, load = np.concatenate(poses)[kept], np.concatenate(touches)[kept].sum(axis=1)
-    if not (np.isfinite(found).all() and np.isfinite(load).all()):
+        stands = False
+    begin, end = round(STAND_S / PHYSICS_STEP), None if stands else walked
+    found = {}
+    for mount, kept in zip(mounts, poses, strict=True):
+        found[mount] = np.concatenate(kept[:end])[begin:]
+        found[mount][:, :3] *= plan.subject.scale
+        kept.clear()
+    touch = np.concatenate(touches[:end])[begin:]
+    load = {"right": touch[:, :3].sum(axis=1) / weight, "left": touch[:, 3:].sum(axis=1) / weight}
+    if not all(np.isfinite(part).all() for part in (*found.values(), *load.values())):
         raise FallError(f"{plan.name}: the physics is no longer finite (seed {plan.seed})")
-    return _Record(found[:, :3] * plan.subject.scale, found[:, 3:], load / weight, stands)
+    return _Motion(found, load, stands)
 
 
-def _truth(record: _Record, factor: int) -> tuple[ImuTruth, np.ndarray, np.ndarray]:
-    """What a perfect IMU says, the load on its foot, and its stances (m, 2) as rows."""
-    truth = imu_truth(record.position, record.quaternion, PHYSICS_STEP, factor)
-    contact = record.contact[truth.index]
-    return truth, contact, runs(at_rest(truth, contact, factor * PHYSICS_STEP))
+def _truth(
+    motion: _Motion, mount: Mount, factor: int, end: int | None = None
+) -> tuple[ImuTruth, np.ndarray, np.ndarray]:
+    """A perfect IMU up to a physics step, the load on its foot, and the foot's stances (m, 2) as rows."""
+
+    def at(place: Mount) -> ImuTruth:
+        pose = motion.poses[place][:end]
+        return imu_truth(pose[:, :3], pose[:, 3:], PHYSICS_STEP, factor)
+
+    truth = at(mount)
+    contact = motion.load[mount.foot][truth.index]
+    still = truth if mount.on_foot == mount else at(mount.on_foot)
+    return truth, contact, runs(at_rest(still, contact, factor * PHYSICS_STEP))
 
 
 def _told_pushes(plan: Plan, until: float) -> dict[str, list[list[float]]]:
@@ -117,16 +136,47 @@ def walk(
     FallError, StrayError
         The walker did not reach the end: there is no walk.
     """
-    factor = divisor(PHYSICS_STEP, plan.rate_hz)
+    return next(walks([plan], policy, on_progress))
+
+
+def walks(
+    plans: Sequence[Plan],
+    policy: Policy | None = None,
+    on_progress: Callable[[float], None] | None = None,
+) -> Iterator[Walk]:
+    """`walk` for plans that differ in mount and rate alone: they are walked once, each truth is read of that.
+
+    Yields
+    ------
+    Each plan's truth, in their order: the same bits as that of `walk`.
+
+    Raises
+    ------
+    ValueError
+        Plans of different steps (`Plan.steps`).
+    InputError, FallError, StrayError
+        As `walk`.
+    """
+    if len({plan.steps for plan in plans}) != 1:
+        raise ValueError("plans to be walked at once differ in mount and rate alone")
+    for plan in plans:
+        divisor(PHYSICS_STEP, plan.rate_hz)
     policy = policy or stock_policy()
+    places = dict.fromkeys(place for plan in plans for place in (plan.mount, plan.mount.on_foot))
+    motion = _physics(plans[0], policy, tuple(places), on_progress)
+    for plan in plans:
+        yield _told(plan, policy, motion)
+
+
+def _told(plan: Plan, policy: Policy, motion: _Motion) -> Walk:
+    """The truth at a plan's mount and rate."""
+    factor = divisor(PHYSICS_STEP, plan.rate_hz)
     interval = factor * PHYSICS_STEP
-    record = _physics(plan, policy, on_progress)
-    truth, contact, stances = _truth(record, factor)
-    if not record.stands:  # a stance that the end of the record cuts short is no footfall
+    truth, contact, stances = _truth(motion, plan.mount, factor)
+    if not motion.stands:  # a stance that the end of the record cuts short is no footfall
         whole = stances[stances[:, 1] < len(truth.index) - 1]
         end = truth.index[whole[-1, 1]] + 2 * factor if len(whole) else 0
-        record = _Record(record.position[:end], record.quaternion[:end], record.contact[:end], False)
-        truth, contact, stances = _truth(record, factor)
+        truth, contact, stances = _truth(motion, plan.mount, factor, end)
     if len(stances) < 3:
         raise FallError(f"{plan.name}: the walker made {len(stances)} footfalls, expected at least 3")
     t = np.arange(len(truth.index)) * interval
@@ -151,7 +201,7 @@ def walk(
             "pace_m_s": plan.gait.pace_m_s,
             "rate_hz": plan.rate_hz,
             "calibration_s": plan.calibration_s,
-            "ends": "standing" if record.stands else "in mid-gait",
+            "ends": "standing" if motion.stands else "in mid-gait",
             **({"paces_m_m_s": [[pace.at_m, pace.m_s] for pace in plan.paces]} if plan.paces else {}),
             **_told_pushes(plan, t[-1]),
             "versions": versions(),

@@ -64,7 +64,7 @@ class Feet:
         n = len(recording.t)
         velocity, quaternion = np.zeros((n, 3)), np.zeros((n, 4))
         quaternion[:, 0] = 1.0
-        now = InertialFilter(FilterSettings(), align(recording, found.rest, self.reckoning.start))
+        now = InertialFilter(FilterSettings(), align(recording, found, self.reckoning.start))
         rate = recording.gyro - found.rest.gyro_bias
         for a, b in pairwise(resets):
             part = slice(a, b + 1)
@@ -131,7 +131,7 @@ def drive(
     """
     r, motion = feet.reckoning, feet.motion
     recording, found = r.recording, r.detected
-    now = InertialFilter(settings, align(recording, found.rest, r.start))
+    now = InertialFilter(settings, align(recording, found, r.start))
     first = found.rest.last + 1
     update = updates(recording.t, found, 2 * r.pdr.stance.reset_s)
     velocity = told(motion)
@@ -147,7 +147,7 @@ def drive(
             turned = motion.direction[k] + now.heading - motion.heading[k]
             say = _back(turned, velocity[k])
             x[STATE["velocity"]] -= say
-            kernels.rest(x, p, gyro, accel, variance, 0.0, settings.velocity_turns)
+            kernels.rest(x, p, gyro, accel, variance, 0.0, settings.velocity_turns, now._up)
             x[STATE["velocity"]] += say
     return math.degrees(_vertical(now.quaternion) @ (now.gyro_bias - found.rest.gyro_bias))
 
@@ -213,7 +213,7 @@ def without(feet: Feet, way: str, seconds: float, settings: FilterSettings = PAP
     """False bias (deg/s) of the paper's filter without one way: "bias", "heading", or "" for none."""
     r = feet.reckoning
     recording, found = r.recording, r.detected
-    now = Without(settings, align(recording, found.rest, r.start), way)
+    now = Without(settings, align(recording, found, r.start), way)
     update = updates(recording.t, found, 2 * r.pdr.stance.reset_s)
     for k in range(found.rest.last + 1, _end(feet, seconds)):
         now.take(recording.t[k], recording.gyro[k], recording.accel[k], int(update[k]))
@@ -247,7 +247,7 @@ def coupling(feet: Feet, stride: int, settings: FilterSettings = PAPER) -> Coupl
     moving = np.flatnonzero(~motion.still[at[stride] : at[stride + 1]]) + at[stride]
     first, last = int(moving[0]), int(moving[-1]) + 1
     update = updates(recording.t, found, 2 * r.pdr.stance.reset_s)
-    now = InertialFilter(settings, align(recording, found.rest, r.start))
+    now = InertialFilter(settings, align(recording, found, r.start))
     rows = slice(found.rest.last + 1, first)
     now.advance(recording.t[rows], recording.gyro[rows], recording.accel[rows], update[rows])
     sideways, distance, place, up = [], [], now.position, _vertical(now.quaternion)

@@ -10,7 +10,6 @@ python -m benchmarks.speed.cluster
 from __future__ import annotations
 
 import pickle
-import resource
 import tempfile
 import time
 from collections.abc import Sequence
@@ -18,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks._common import options, out, write_json
+from benchmarks._usage import resident_bytes
 from benchmarks.speed.sweep import invented
 from footfall.scenarios.report.tables import new_table
 from footfall.scenarios.studies.cluster import Cluster, Craft, Piece
@@ -66,18 +66,12 @@ def overhead(cluster: Cluster, tasks: Sequence[Task]) -> dict[str, float]:
     return {"first_s": began - start, "a_task_s": (ended - began) / count - own}
 
 
-def resident_kb() -> float:
-    """Memory of this process, in kB; Linux."""
-    pages = Path("/proc/self/statm").read_text(encoding="utf-8").split()[1]
-    return int(pages) * resource.getpagesize() / 1e3
-
-
 def many(walks: int, folder: Path) -> dict[str, float]:
     """Of a study of so many walks, a task each: s and bytes a walk in this process."""
     plan_of(study(20, 200))  # what planning itself loads
-    before, start = resident_kb(), time.process_time()
+    before, start = resident_bytes() / 1e3, time.process_time()
     plan = plan_of(study(walks, walks * 10))
-    told = {"planning_s": time.process_time() - start, "plan_kb": resident_kb() - before}
+    told = {"planning_s": time.process_time() - start, "plan_kb": resident_bytes() / 1e3 - before}
     place = StudyFolder(folder)
     with place.alone():
         made = list(invented(plan.tasks))

@@ -38,7 +38,7 @@ def cores_used(work: Callable[[], object]) -> float:
 
 def compiled(recording: Recording, found: Detected, settings: FilterSettings) -> Callable[[], InertialFilter]:
     """The filter by itself: detection is done, footfalls are not gathered."""
-    start = align(recording, found.rest, StartPose())
+    start = align(recording, found, StartPose())
     update = updates(recording.t, found, None if settings.update == "stance" else 0.6)
     rows = slice(found.rest.last + 1, len(recording.t))
 
@@ -147,7 +147,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
     first = found.rest.last + 1
     rows = range(first, first + min(n, round(SHORT_S * RATE)))
-    start = align(recording, found.rest, StartPose())
+    start = align(recording, found, StartPose())
     short = recording.t, recording.gyro, recording.accel
     still = updates(recording.t, found, 0.6)
     cases["numpy twin, an update every still sample"] = seconds(

@@ -11,8 +11,6 @@ python -m benchmarks.speed.long_recording --hours 3 10 --format csv
 from __future__ import annotations
 
 import multiprocessing
-import resource
-import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
@@ -27,6 +25,7 @@ import pyarrow.parquet as pq
 
 from benchmarks._common import options, write_json
 from benchmarks._page import Sheet
+from benchmarks._usage import peak_bytes
 from footfall.columns import ACCEL, GYRO
 from footfall.hdr.tracking import track
 from tests.helpers.synthetic_foot import walk
@@ -75,9 +74,7 @@ def tracked(path: Path | None, method: str) -> tuple[int, float, float]:
     """Footfalls, s of processor time and the most MiB of this process; None tracks nothing."""
     begin = time.process_time()
     footfalls = 0 if path is None else len(track(path, method).track)
-    unit = 1 if sys.platform == "darwin" else 1024
-    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 2**20
-    return footfalls, time.process_time() - begin, most
+    return footfalls, time.process_time() - begin, peak_bytes() / 2**20
 
 
 def alone(path: Path | None, method: str) -> tuple[int, float, float]:

@@ -10,8 +10,6 @@ python -m benchmarks.speed.reading --hours 0.1
 from __future__ import annotations
 
 import multiprocessing
-import resource
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Sequence
@@ -25,6 +23,7 @@ import pyarrow.csv as pa_csv
 
 from benchmarks._common import options, write_json
 from benchmarks._page import Sheet
+from benchmarks._usage import peak_bytes
 from benchmarks.speed.long_recording import NAMES, RATE, parts
 from footfall.formats import read
 
@@ -55,8 +54,7 @@ def measure(path: Path) -> tuple[int, float, float]:
     begin = time.process_time()
     recording, _ = read(path)
     spent = time.process_time() - begin
-    unit = 1 if sys.platform == "darwin" else 1024
-    return len(recording.t), spent, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 2**20
+    return len(recording.t), spent, peak_bytes() / 2**20
 
 
 def alone(work: Callable[..., Any], *arguments: Any) -> Any:

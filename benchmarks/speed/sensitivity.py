@@ -8,8 +8,6 @@ python -m benchmarks.speed.sensitivity
 
 from __future__ import annotations
 
-import resource
-import sys
 import time
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -17,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks._common import options, out, write_json
+from benchmarks._usage import peak_bytes
 from footfall.hdr.methods import METHODS
 from footfall.models.imu import load_spec
 from footfall.scenarios.report.tables import new_table
@@ -82,11 +81,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     rng = np.random.default_rng(1)
     map_of(drawn(1, 50, rng))  # compiled
     sobol_of(drawn(1, 50, rng))
-    unit = 1 if sys.platform == "darwin" else 1024
     walks, units = drawn(100, 1000, rng), drawn(20, 1300, rng)
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6
+    before = peak_bytes() / 1e6
     map_s, _ = timed(lambda: map_of(walks))
-    map_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6
+    map_mb = peak_bytes() / 1e6
     sobol_s, _ = timed(lambda: sobol_of(units))
     table = new_table("what", "CPU s", "MB more", "MB in all")
     table.add_row("map: 100 walks, 1,000 pairs", f"{map_s:.2f}", f"{map_mb - before:.0f}", f"{map_mb:.0f}")

@@ -9,11 +9,13 @@ python -m benchmarks.speed.startup
 from __future__ import annotations
 
 import argparse
-import resource
+import os
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from benchmarks._usage import children_cpu_s
 
 SCENARIO = """
 description = "thirty metres"
@@ -49,10 +51,11 @@ COMMANDS = (
 
 def processor_time(arguments: list[str], folder: Path) -> float:
     """User and system time (s) of a Python process and its children."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([sys.executable, *arguments], cwd=folder, check=True, capture_output=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    before = children_cpu_s()
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    command = [sys.executable, *arguments]
+    subprocess.run(command, cwd=folder, check=True, capture_output=True, env=environment)
+    return children_cpu_s() - before
 
 
 def main() -> None:

@@ -8,8 +8,6 @@ python -m benchmarks.speed.studies --units 1000
 
 from __future__ import annotations
 
-import resource
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Sequence
@@ -18,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks._common import options, out, write_json
+from benchmarks._usage import children_cpu_s, children_peak_bytes
 from footfall.hdr.methods import METHODS
 from footfall.scenarios.evaluate import cases
 from footfall.scenarios.execute import execute
@@ -52,15 +51,12 @@ def stages(trials: Sequence[Trial], walk: Walk) -> dict[str, float]:
 
 def spread(trials: Sequence[Trial], workers: int, store: Path) -> dict[str, float]:
     """Seconds of all trials over processes, and what they took of the processors and of memory."""
-    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    before, start = children_cpu_s(), time.perf_counter()
     count = sum(1 for _ in execute(trials, workers=workers, store=store))
-    wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    unit = 1 if sys.platform == "darwin" else 1024
     return {
-        "seconds": wall,
-        "cpu_ms_a_unit": 1e3 * cpu / count,
-        "largest_worker_mb": after.ru_maxrss * unit / 1e6,
+        "seconds": time.perf_counter() - start,
+        "cpu_ms_a_unit": 1e3 * (children_cpu_s() - before) / count,
+        "largest_worker_mb": children_peak_bytes() / 1e6,
     }
 
 

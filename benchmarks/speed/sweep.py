@@ -9,7 +9,6 @@ python -m benchmarks.speed.sweep --units 400
 from __future__ import annotations
 
 import os
-import resource
 import shutil
 import subprocess
 import sys
@@ -23,6 +22,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks._common import options, out, write_json
+from benchmarks._usage import children_cpu_s
 from footfall.scenarios.evaluate import cases
 from footfall.scenarios.judge.score import Score, score
 from footfall.scenarios.report.tables import new_table
@@ -183,12 +183,10 @@ def nothing_left(text: str, folder: Path) -> dict[str, float]:
     line = [sys.executable, "-m", "footfall", "sweep", str(file), "--out", str(place)]
     took = []
     for _ in range(3):
-        before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+        before, start = children_cpu_s(), time.perf_counter()
         done = subprocess.run(line, check=True, capture_output=True, text=True, env=os.environ)
         assert "nothing is left to do" in done.stderr
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        took.append((spent, time.perf_counter() - start))
+        took.append((children_cpu_s() - before, time.perf_counter() - start))
     told["cpu_s"], told["clock_s"] = min(took)[0], min(clock for _, clock in took)
     shutil.rmtree(place)
     return told

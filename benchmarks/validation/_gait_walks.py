@@ -83,7 +83,7 @@ def walk_straight(case: Case, metres: float, policy: Policy | None = None) -> Mo
         ]
         kept.append(
             (
-                np.hstack([sensor[:, body.SENSOR_IMU_POSITION], sensor[:, body.SENSOR_IMU_QUATERNION]]),
+                sensor[:, body.sensor_imu(0)].copy(),
                 sensor[:, body.SENSOR_FOOT_POSITION].reshape(len(sensor), 2, 3),
                 touch / weight,
                 moment.trace.qpos[0][:, joints],

@@ -34,6 +34,7 @@ from footfall.scenarios.trial import Trial, recording_of, setup, walk_of
 from footfall.streams import stream
 
 STUDIES = ("paces", "mounts")
+FEET = tuple(name for name, mount in MOUNTS.items() if mount.segment == "foot")  # shanks: `shank`
 CUT_S = 60.0
 NEAR_S = 0.1
 SHORT_M, SHORT_SEED, PACES = 120.0, 901, (0.7, 1.0, 1.3, 1.7)
@@ -65,7 +66,7 @@ def trials() -> Iterator[tuple[str, Trial]]:
                 seen.add(task.walk)
                 yield name, next(iter(task.trials()))[0][0]
     short = load_scenario("straight").changed("path", elements=[{"kind": "straight", "length_m": SHORT_M}])
-    for mount, pace in product(MOUNTS, PACES):
+    for mount, pace in product(FEET, PACES):
         worn = short.changed("sensor", mount=mount, imu="consumer").changed("gait", pace_m_s=pace)
         yield "short", Trial(setup(worn, methods=["pdr"]), 0, SHORT_SEED, SHORT_SEED, SHORT_SEED)
 
@@ -101,10 +102,10 @@ def stances_of(recording: Recording, detector: str) -> np.ndarray:
     return recording.t[found.stances.resets[found.stances.footfalls]]
 
 
-def go(job: tuple[str, Trial, str, int]) -> list[Counted]:
-    """A walk whole and in cuts."""
-    study, trial, detector, cuts = job
-    walk = walk_of(trial)
+def go(job: tuple[str, Trial, str, int, Sequence[Trial]]) -> list[Counted]:
+    """A walk whole and in cuts; the last of a job are the trials on the same steps."""
+    study, trial, detector, cuts, alike = job
+    walk = walk_of(trial, also=alike)
     whole = recording_of(trial, walk)
     rng = stream(trial.walk_seed, "where a recording begins")
     begins = rng.uniform(walk.calibration_s + 5.0, walk.t[-1] - CUT_S - 5.0, size=cuts)
@@ -156,7 +157,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--cuts", type=int, default=20, help="minutes cut out of each walk (default 20)")
     parser.add_argument("--page", type=Path, metavar="MD", help="put the table into this page's mark")
     chosen = parser.parse_args(arguments)
-    jobs = [(name, trial, chosen.detector, chosen.cuts) for name, trial in trials()]
+    every = [(name, trial, trial.plan.steps) for name, trial in trials()]
+    alike: dict[str, list[Trial]] = {}
+    for _, trial, steps in every:
+        alike.setdefault(steps, []).append(trial)
+    jobs = [(name, trial, chosen.detector, chosen.cuts, alike[steps]) for name, trial, steps in every]
     found = [one for counted in run_all(go, jobs, chosen.processes, "walks") for one in counted]
     made = sheet(found)
     made.show()

@@ -174,6 +174,8 @@ def workers(sweep: Sweep, kills: int, tasks: int, rng: random.Random) -> int:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print the table."""
+    if not Path("/proc").is_dir():
+        raise SystemExit("needs /proc, which tells what a process has started: Linux")
     parser = options(__doc__)
     parser.add_argument("--kills", type=int, default=20, help="of the driver (default 20)")
     parser.add_argument("--worker-kills", type=int, default=5, help="of a worker (default 5)")

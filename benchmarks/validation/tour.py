@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import resource
 import subprocess
 import sys
 import tempfile
@@ -21,6 +20,7 @@ from typing import NamedTuple
 from rich.table import Table
 
 from benchmarks._common import options, out, write_json
+from benchmarks._usage import children_cpu_s
 
 TARGET_S = 300.0
 SCENARIO = "block"
@@ -68,10 +68,9 @@ def take(step: str, folder: Path, environment: dict[str, str]) -> Took:
     """Do a step in a folder, with its words kept."""
     program, *words = step.split()
     command = [sys.executable, *(("-m", "footfall") if program == "footfall" else ()), *words]
-    before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    before, begin = children_cpu_s(), time.perf_counter()
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
-    seconds, after = time.perf_counter() - begin, resource.getrusage(resource.RUSAGE_CHILDREN)
-    used = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    seconds, used = time.perf_counter() - begin, children_cpu_s() - before
     return Took(step, seconds, used, done.returncode, (done.stderr or done.stdout).strip())
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import shlex
 from typing import Annotated
 
 import typer
 from rich.text import Text
 
 from footfall.cli.options import JsonOption
-from footfall.cli.terminal import ERR, OUT, finite, print_json
+from footfall.cli.terminal import ERR, OUT, finite, print_json, words_of
 from footfall.errors import InputError
 
 FAILED = 1
@@ -62,7 +61,7 @@ def check(
     if (method is None) == (command is None):
         raise InputError("check: expected either a method or --command")
     try:
-        words = None if command is None else shlex.split(command)
+        words = None if command is None else words_of(command)
     except ValueError as error:
         raise InputError(f"--command: {error}") from None
     found = find_method(method, command=words, format=format, timeout_s=timeout, needs=needs)  # type: ignore[arg-type]

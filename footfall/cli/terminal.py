@@ -94,8 +94,22 @@ def command_line(context: typer.Context, *but: str) -> str:
     return shlex.join(words)
 
 
+def words_of(line: str, escape: str = "\\" if os.name == "posix" else "") -> list[str]:
+    r"""The words of a command line in quotes or without; "\" is part of a word where paths have it.
+
+    Raises
+    ------
+    ValueError
+        A quotation has no end.
+    """
+    lexer = shlex.shlex(line, posix=True, punctuation_chars=False)
+    lexer.whitespace_split, lexer.commenters, lexer.escape = True, "", escape
+    return list(lexer)
+
+
 def perform(app: typer.Typer, arguments: list[str] | None) -> int:
     """Run a command line, tell each mistake in one sentence, and return the exit code."""
+    _print_what_it_can()
     try:
         code = int(app(arguments, standalone_mode=False, prog_name="footfall") or 0)
     except InputError as error:
@@ -112,6 +126,12 @@ def perform(app: typer.Typer, arguments: list[str] | None) -> int:
     if code == INTERRUPTED:
         print("footfall: interrupted", file=sys.stderr)
     return code
+
+
+def _print_what_it_can() -> None:
+    """A file or pipe in an encoding that lacks a character, as Windows' own do, is given "?" in its place."""
+    if getattr(sys.stdout, "errors", None) == "strict" and hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="replace")
 
 
 def _given(error: BaseException, arguments: Sequence[str]) -> str:

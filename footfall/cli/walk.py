@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.progress import Progress, TaskID
+from rich.progress import Progress
 
 from footfall.cli.options import NoCacheOption, ScenarioArgument, SetOption
 from footfall.cli.terminal import ERR, TABLES, finite, require_output, say
@@ -37,7 +37,7 @@ def walk(
     mount: Annotated[
         str | None,
         typer.Option(
-            help="Place of the IMU on the shoe (see `footfall list`). Default: the scenario's. Several by "
+            help="Place of the IMU on the leg (see `footfall list`). Default: the scenario's. Several by "
             "commas are one walk in a file each: walk-heel.parquet."
         ),
     ] = None,
@@ -60,7 +60,7 @@ def walk(
     from footfall.simulate.plan import PHYSICS_STEP
     from footfall.simulate.truth import divisor
     from footfall.simulate.walk import write_walk
-    from footfall.simulate.walking import walk as walk_anew
+    from footfall.simulate.walking import walks
 
     if output is not None:
         require_output(output, TABLES)
@@ -83,25 +83,27 @@ def walk(
         show(plan)
     if output is None:
         return
-    # The body feels no mount: the same plan takes the same steps, and its truth is told at another place.
+    # The body feels no mount: it is walked once, and each place has its truth of the same steps.
     plans = {output: plan}
     if len(mounts) > 1:
         plans = {
             output.with_stem(f"{output.stem}-{name}"): replace(plan, mount=MOUNTS[name]) for name in mounts
         }
-    for file, one in plans.items():
-        with Progress(console=ERR, transient=True, disable=not ERR.is_terminal) as progress:
-            bar = progress.add_task(f"walking {file.stem}", total=one.route.length)
+    every = list(plans.values())
+    with Progress(console=ERR, transient=True, disable=not ERR.is_terminal) as progress:
+        bar = progress.add_task(f"walking {output.stem}", total=plan.route.length)
 
-            def walked(metres: float, progress: Progress = progress, bar: TaskID = bar) -> None:
-                progress.update(bar, completed=metres)
+        def walked(metres: float) -> None:
+            progress.update(bar, completed=metres)
 
-            def waiting(progress: Progress = progress, bar: TaskID = bar) -> None:
-                progress.update(bar, description="another process is walking this; waiting")
+        def waiting() -> None:
+            progress.update(bar, description="another process is walking this; waiting")
 
-            if no_cache:
-                truth = walk_anew(one, on_progress=walked)
-            else:
-                truth = cached_walk(one, on_progress=walked, on_wait=waiting)
-        write_walk(truth, file)
-        say(f"{len(truth.footfalls.t)} footfalls in {truth.t[-1]:.0f} s: {file}")
+        truths = (
+            walks(every, on_progress=walked)
+            if no_cache
+            else (cached_walk(one, also=every, on_progress=walked, on_wait=waiting) for one in every)
+        )
+        for file, truth in zip(plans, truths, strict=True):
+            write_walk(truth, file)
+            say(f"{len(truth.footfalls.t)} footfalls in {truth.t[-1]:.0f} s: {file}")

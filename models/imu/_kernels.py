@@ -1,4 +1,4 @@
-"""Compiled kernels of the error effects and of the die. effects.py explains them, _plain.py is their twin.
+"""Compiled kernels of the error effects and of the die. effects.py explains them, _plain.py checks them.
 
 Each changes its samples in place, row by row: a recording needs no memory but its own.
 """

@@ -1,6 +1,6 @@
-"""The error effects in numpy and scipy, signal by signal: the plain twin that checks effects.py.
+"""The error effects in numpy and scipy, signal by signal: a second implementation that checks effects.py.
 
-Written apart from it, from the same equations, with the same streams of normals.
+Written independently from the same equations, with the same streams of normal numbers.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from footfall.models.imu.effects import FLICKER_SHARE, FLICKER_TIMES, Channel
 
 
 def sensed(channel: Channel, without: Collection[str] = ()) -> np.ndarray:
-    """What the triad says, (n, 3)."""
+    """What the triad measures, (n, 3)."""
     unit, spec = channel.unit, channel.unit.spec
     true, force, warmth = channel.true, channel.force, channel.warmth[:, None]
     rate = 1 / channel.interval

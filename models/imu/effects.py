@@ -1,4 +1,4 @@
-"""The error effects of gyros and accelerometers, in the order in which a sensor suffers them."""
+"""The error effects of gyros and accelerometers, in the order in which they act."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ FLICKER_SHARE = 0.856
 
 @dataclass(frozen=True)
 class Channel:
-    """What the effects of one triad may look at.
+    """What the effects of one triad depend on.
 
     Attributes
     ----------
     unit : the triad's constants
-    true : (n, 3) what a perfect triad says, rad/s or m/s2
+    true : (n, 3) what a perfect triad measures, rad/s or m/s2
     force : (n, 3) m/s2, the true specific force
     warmth : (n,) K, the die above the sheet's reference temperature
     interval : s between samples
@@ -55,7 +55,7 @@ class Channel:
         interval: float,
         seed: int,
     ) -> Channel:
-        """That of the "gyro" or the "accel" of `unit`; `die` (n,) degC, `seed` of the noises."""
+        """The channel of the "gyro" or the "accel" of `unit`; `die` (n,) degC, `seed` of the noises."""
         return cls(
             unit=getattr(unit, sensor),
             true=true,
@@ -66,7 +66,7 @@ class Channel:
         )
 
 
-# Adds itself to the signal (n, 3), or alters it, in place.
+# Adds an error to the signal (n, 3), or alters it, in place.
 Effect = Callable[[np.ndarray, Channel], None]
 
 
@@ -82,7 +82,7 @@ def non_linearity(x: np.ndarray, channel: Channel) -> None:
     """Deviation of each axis from the best straight line through its range: n FS T3(x / FS).
 
     T3(u) = 4 u^3 - 3 u, the third Chebyshev polynomial: the cubic whose best line is zero, so that a
-    calibrated scale factor leaves it. It is as far off at full scale as, the other way, at half of it.
+    calibrated scale factor leaves it. At half of full scale it is minus what it is at full scale.
     """
     full_scale = channel.unit.spec.range
     _kernels.add_cubic(x, channel.unit.non_linearity * full_scale, full_scale, channel.true)
@@ -121,7 +121,7 @@ def bandwidth(x: np.ndarray, channel: Channel) -> None:
     """Second-order Butterworth low-pass, causal, started in the steady state of the first sample.
 
     Its delay is the real one (3.5 ms for 50 Hz at 200 Hz), the same for gyros and accelerometers of one
-    bandwidth. A bandwidth beyond half the sampling rate is none: there is nothing left to cut.
+    bandwidth. A bandwidth beyond half the sampling rate changes nothing.
     """
     if channel.unit.spec.bandwidth < 0.5 / channel.interval:
         _kernels.low_pass(x, *butterworth(channel.unit.spec.bandwidth * channel.interval))
@@ -145,7 +145,7 @@ def quantisation(x: np.ndarray, channel: Channel) -> None:
 def gauss_markov(
     x: np.ndarray, sigma: float, tau: float, interval: float, generator: np.random.Generator
 ) -> None:
-    """Add a first-order Gauss-Markov process to each axis, started from its stationary law.
+    """Add a first-order Gauss-Markov process to each axis, started from its stationary distribution.
 
     b' = exp(-dt/tau) b + sqrt(1 - exp(-2 dt/tau)) n, scaled by sigma. A start from zero would make the first
     minutes too good.
@@ -157,7 +157,7 @@ def gauss_markov(
 def butterworth(cutoff: float) -> tuple[float, float, float, float, float]:
     """b0, b1, b2, a1, a2 of the second-order low-pass; `cutoff` in cycles a sample, below one half.
 
-    The analogue 1 / (s^2 + sqrt(2) s + 1) by the bilinear transform, its corner warped into place.
+    The analogue 1 / (s^2 + sqrt(2) s + 1) by the bilinear transform, prewarped at the corner.
     """
     k = math.tan(math.pi * cutoff)
     norm = 1 + math.sqrt(2) * k + k * k
@@ -184,7 +184,7 @@ _CHAIN: dict[str, tuple[Effect, Callable[[TriadUnit], ArrayLike]]] = {
 
 
 def sensed(channel: Channel, without: Collection[str] = ()) -> np.ndarray:
-    """What the triad says: (n, 3), an array of its own.
+    """What the triad measures: (n, 3), an array of its own.
 
     An effect that is switched off, or that the triad does not have, passes the signal on untouched, bit for
     bit, and leaves every other effect's random draws as they are.
@@ -201,7 +201,7 @@ def stages(channel: Channel, without: Collection[str] = ()) -> Iterator[tuple[st
 
     Yields
     ------
-    name of the effect, (n, 3) signal: an array of its own, or the very array before where nothing happened
+    name of the effect, (n, 3) signal: an array of its own, or the one before where the effect does nothing
     """
     x = channel.true
     for name, effect in _effects(channel, without):

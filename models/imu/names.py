@@ -7,7 +7,7 @@ from collections.abc import Collection
 from footfall.errors import InputError
 from footfall.settings import did_you_mean
 
-# In the order in which a sensor suffers them.
+# In the order in which they act on the true signal.
 EFFECTS = (
     "scale",
     "misalignment",

@@ -16,7 +16,7 @@ from footfall.settings import did_you_mean
 
 @dataclass(frozen=True)
 class Constant:
-    """A constant of a unit as it is written: `triad`, `attribute` of TriadUnit, SI value of 1, shape."""
+    """A constant of a unit: `triad`, `attribute` of TriadUnit, `factor` from it to SI units, `shape`."""
 
     triad: str
     attribute: str
@@ -25,7 +25,7 @@ class Constant:
 
 
 def _constants() -> dict[str, Constant]:
-    """Those whose spread over units a sheet tells, by the sheet's own name without `_sigma`."""
+    """The constants that differ between units, by the name of their spread in a sheet, less `_sigma`."""
     square = {"misalignment", "g", "g2"}
     found = {}
     for triad, keys in (("gyro", GYRO_KEYS), ("accel", ACCEL_KEYS)):
@@ -42,7 +42,7 @@ CONSTANTS = _constants()
 
 
 def overridden(unit: ImuUnit, values: Mapping[str, Any]) -> ImuUnit:
-    """`unit` with other constants, by their names in `CONSTANTS`, in the units that these tell.
+    """`unit` with other constants, by their names in `CONSTANTS`, in the units of these names.
 
     Raises
     ------

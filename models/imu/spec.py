@@ -26,8 +26,8 @@ class TriadSpec:
     """Three gyros or three accelerometers. `unit` below is rad/s for gyros, m/s2 for accelerometers.
 
     Each `_sigma` is the standard deviation over units (of the turn-on bias: over recordings) of a zero-mean
-    normal law, for every axis or matrix element by itself. A value of 0 (or an infinite range or bandwidth)
-    means that the sensor has no such error.
+    normal distribution, for every axis or matrix element by itself. A value of 0 (or an infinite range or
+    bandwidth) means that the sensor has no such error.
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ def _section(name: str, keys: _Keys) -> type[Strict]:
     bounds = {
         "range": Field(gt=0),  # zero would silence the sensor
         "bandwidth": Field(gt=0),
-        # Beyond these it is no sensor any more, but a slip of the unit.
+        # Beyond these the value is probably in another unit.
         "scale_sigma": Field(ge=0, le=0.5),
         "misalignment_sigma": Field(ge=0, le=45),
         "non_linearity_sigma": Field(ge=0, le=50),
@@ -195,7 +195,7 @@ class SheetDocument:
 
 
 def load_spec(name_or_path: str | os.PathLike[str]) -> ImuSpec:
-    """A stock data sheet by name, or anyone's by the path of its TOML file.
+    """A stock data sheet by name, or another by the path of its TOML file.
 
     Raises
     ------

@@ -233,20 +233,19 @@ def _with_known(p, row):  # type: ignore[no-untyped-def]
 
 
 @kernel(nogil=True)
-def _with_known_turn(x, p):  # type: ignore[no-untyped-def]
-    """p if the heading was known, and whatever the gyro's errors turn about the vertical."""
+def _with_known_turn(p, up):  # type: ignore[no-untyped-def]
+    """p if the heading was known, and whatever the gyro's errors turn about `up`, a direction of the body."""
     n = p.shape[0]
-    m = matrix((x[_XQ], x[_XQ + 1], x[_XQ + 2], x[_XQ + 3]))
     known, row = p.copy(), np.zeros(n)
     row[HEADING] = 1.0
     _with_known(known, row)
     row[HEADING] = 0.0
-    row[_W], row[_W + 1], row[_W + 2] = m[6], m[7], m[8]
+    row[_W], row[_W + 1], row[_W + 2] = up
     _with_known(known, row)
     if n > _G:
         for k in range(3):
             row[:] = 0.0
-            row[_G + k], row[_G + 3 + k], row[_G + 6 + k] = m[6], m[7], m[8]
+            row[_G + k], row[_G + 3 + k], row[_G + 6 + k] = up
             _with_known(known, row)
     return known
 
@@ -309,15 +308,17 @@ def heading_off(x, n, innovation, variance):  # type: ignore[no-untyped-def]
 
 
 @kernel(nogil=True)
-def rest(x, p, gyro, accel, velocity_variance, rate_variance, turns):  # type: ignore[no-untyped-def]
+def rest(x, p, gyro, accel, velocity_variance, rate_variance, turns, up):  # type: ignore[no-untyped-def]
     """Zero velocity, and zero rate where `rate_variance` > 0; returns the error injected.
 
     turns : whether the velocity may correct the heading and the gyro's errors about the vertical. If not, the
     gain is that of a filter which knows them, so that they neither change nor let anything else change
+    up : (3,) the body's direction that counts as the vertical. It must not change from update to update: the
+    corrections of a bias would each be level, but their sum would not
     """
     n = p.shape[0]
     dx = np.zeros(n)
-    known = p if turns else _with_known_turn(x, p)
+    known = p if turns else _with_known_turn(p, up)
     _take_in(p, known, dx, zero_velocity(x, n, velocity_variance), not turns)
     if rate_variance > 0.0:
         _take_in(p, p, dx, zero_rate(x, n, gyro, accel, rate_variance), False)
@@ -346,13 +347,13 @@ def heading_variance(x, p):  # type: ignore[no-untyped-def]
 
 
 @kernel(nogil=True)
-def run(x, p, phi, before, t, gyro, accel, still, noise, gap, variances, turns, stops, states, covariances):  # type: ignore[no-untyped-def]
+def run(x, p, phi, before, t, gyro, accel, still, noise, gap, variances, turns, up, stops, kept, kept_p):  # type: ignore[no-untyped-def]
     """All samples in order, each over the interval since the one before; `before` is the state's stamp.
 
     still : (n,) 1 for zero velocity, 2 for zero rate too
     variances : of zero velocity and of zero rate
-    stops : (k,) increasing, samples after which x and p are written into `states` and `covariances` (k, ...);
-    -1 is before the first
+    stops : (k,) increasing, samples after which x and p are written into `kept` and `kept_p` (k, ...); -1 is
+    before the first
     """
     stop = 0
     for k in range(-1, len(t)):
@@ -361,8 +362,8 @@ def run(x, p, phi, before, t, gyro, accel, still, noise, gap, variances, turns, 
             before = t[k]
             if still[k] > 0:
                 rate = variances[1] if still[k] > 1 else 0.0
-                rest(x, p, gyro[k], accel[k], variances[0], rate, turns)
+                rest(x, p, gyro[k], accel[k], variances[0], rate, turns, up)
         if stop < len(stops) and stops[stop] == k:
-            states[stop] = x
-            covariances[stop] = p
+            kept[stop] = x
+            kept_p[stop] = p
             stop += 1

@@ -28,6 +28,7 @@ class PlainFilter:
 
     def __init__(self, settings: FilterSettings, start: Alignment) -> None:
         self.settings = settings
+        self.up = np.array(start.up)
         self.t = start.t
         self.attitude = Rotation.from_quat(start.quaternion, scalar_first=True).as_matrix()
         self.position, self.velocity = np.array(start.position, dtype=float), np.zeros(3)
@@ -116,12 +117,11 @@ class PlainFilter:
 
     def _known_rows(self) -> np.ndarray:
         """What zero velocity must not touch: heading, and the gyro's errors about the vertical."""
-        up = self.attitude[2]
         rows = np.zeros((5 if self.settings.g_sensitivity else 2, self.settings.states))
         rows[0, HEADING] = 1.0
-        rows[1, GYRO_BIAS] = up
+        rows[1, GYRO_BIAS] = self.up
         if self.settings.g_sensitivity:
-            rows[2:, G_SENSITIVITY] = np.kron(up, np.eye(3))
+            rows[2:, G_SENSITIVITY] = np.kron(self.up, np.eye(3))
         return rows
 
     def _with_known_turn(self) -> np.ndarray:

@@ -52,7 +52,8 @@ class FilterSettings:
     velocity_turns : True lets zero velocity correct the heading and the gyro bias about the vertical, as in
         the paper. A bias b turns a stride of length L sideways by b L, so that every velocity which a foot
         has to the side when it is called still passes for a bias. False leaves them what they are, and the
-        gain is that of a filter that knows them: else their growing variance would be put into the tilt
+        gain is that of a filter that knows them: else their growing variance would be put into the tilt.
+        The vertical is that of `Alignment.vertical`, one direction of the body for the whole walk
     accel_noise, gyro_noise : m/s2/sqrt(Hz), rad/s/sqrt(Hz), of the samples; far above a data sheet's, because
         the shocks of walking meet scale factors and finite bandwidth
     accel_bias_walk, gyro_bias_walk : m/s2/sqrt(s), rad/s/sqrt(s), growth of the biases
@@ -136,6 +137,7 @@ class Alignment:
     gyro_bias : (3,) rad/s, measured at rest
     force : (3,) m/s2, measured at rest
     position : m
+    vertical : (3,) direction of the body that is vertical in the mean over a stride; None: that of the rest
     """
 
     t: float
@@ -143,6 +145,14 @@ class Alignment:
     gyro_bias: np.ndarray
     force: np.ndarray
     position: tuple[float, float, float] = ORIGIN
+    vertical: np.ndarray | None = None
+
+    @property
+    def up(self) -> tuple[float, float, float]:
+        """`vertical` as a unit vector, that of the rest where nobody told another."""
+        vector = self.force if self.vertical is None else self.vertical
+        x, y, z = (np.asarray(vector, dtype=float) / np.linalg.norm(vector)).tolist()
+        return x, y, z
 
 
 class InertialFilter:
@@ -172,6 +182,7 @@ class InertialFilter:
             ]
         )
         self._sample = np.zeros(3), np.asarray(start.force, dtype=float)
+        self._up = start.up
         self._gap = np.array([settings.gap_s, settings.gap_accel, settings.gap_gyro])
         self._variances = (settings.sigma_velocity**2, settings.sigma_rate**2 if settings.zaru else 0.0)
 
@@ -214,6 +225,7 @@ class InertialFilter:
             self._gap,
             self._variances,
             self.settings.velocity_turns,
+            self._up,
             np.array(stops, dtype=np.int64),
             *states,
         )
@@ -231,9 +243,8 @@ class InertialFilter:
         """
         velocity, rate = self._variances
         rate = rate if update == ZERO_RATE else 0.0
-        return np.asarray(
-            kernels.rest(self._x, self._p, *self._sample, velocity, rate, self.settings.velocity_turns)
-        )
+        turns = self.settings.velocity_turns
+        return np.asarray(kernels.rest(self._x, self._p, *self._sample, velocity, rate, turns, self._up))
 
     def update(self, measurement: Measurement) -> np.ndarray:
         """Take in any measurement of the error state.

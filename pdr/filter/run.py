@@ -11,6 +11,7 @@ import numpy as np
 
 from footfall.conventions import wrap
 from footfall.errors import InputError
+from footfall.late import late
 from footfall.pdr.filter.ins import (
     MOVING,
     ZERO_RATE,
@@ -24,9 +25,13 @@ from footfall.pdr.filter.smooth import Node, smoothed
 from footfall.pdr.filter.states import States
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.reckoning import Detected, PdrParams, StartPose, detect, level_attitude
-from footfall.pdr.rest import Rest
+from footfall.pdr.stance import compact
 from footfall.recording import Recording
 from footfall.runs import runs
+
+strapdown = late("footfall.pdr._kernels")
+
+STRIDES = 10
 
 
 @dataclass(frozen=True)
@@ -89,15 +94,44 @@ class Filtered:
     innovation: np.ndarray
 
 
-def align(recording: Recording, rest: Rest, start: StartPose) -> Alignment:
-    """Level by the mean force at rest, heading as given, gyro bias as measured."""
+def align(
+    recording: Recording,
+    found: Detected,
+    start: StartPose,
+    tilt_gain: float = PdrParams.tilt_gain,
+    strides: int = STRIDES,
+) -> Alignment:
+    """Level by the mean force at rest, heading as given, gyro bias as measured.
+
+    tilt_gain, strides : of `walking_vertical`
+    """
+    rest = found.rest
     return Alignment(
         t=float(recording.t[rest.last]),
         quaternion=about_vertical(level_attitude(rest.force), start.heading),
         gyro_bias=rest.gyro_bias,
         force=rest.force,
         position=start.position,
+        vertical=walking_vertical(recording, found, tilt_gain, strides),
     )
+
+
+def walking_vertical(
+    recording: Recording, found: Detected, tilt_gain: float, strides: int = STRIDES
+) -> np.ndarray:
+    """(3,) mean direction of the vertical in the body over the first `strides`, from dead reckoning.
+
+    A bias turns the heading by its part along this direction, and tilts the foot by the rest of it. So zero
+    velocity, which sees tilt, sees the rest only.
+    """
+    rest, places = found.rest, found.stances.footfalls
+    ends = places[:-1][:strides] + 1  # strides only, not what lies between the resets of a still period
+    resets = found.stances.resets[: ends[-1] + 1]
+    rows = slice(0, resets[-1] + 1)
+    samples = (compact(column[rows]) for column in (recording.t, recording.gyro, recording.accel))
+    _, _, sums = strapdown.reckon(*samples, rest.gyro_bias, level_attitude(rest.force), resets, tilt_gain)
+    vertical = sums[ends, :3].sum(axis=0)
+    return np.asarray(vertical / np.linalg.norm(vertical))
 
 
 def run_filter(
@@ -114,7 +148,7 @@ def run_filter(
 
     Parameters
     ----------
-    pdr : still start, stances and detector; `tilt_gain` means nothing here
+    pdr : still start, stances and detector; `tilt_gain` serves to find `walking_vertical`
     start : where the IMU rests before the walk, `found.rest.last`; what it does from there on is filtered
     corrector : a heading method, asked at every footfall after footfall 0
     found : what `detect` found, where it is known already
@@ -133,7 +167,7 @@ def run_filter(
     found = found or detect(recording, pdr)
     stances, resets = found.stances, found.stances.resets
     update = updates(recording.t, found, None if by_stance else 2 * pdr.stance.reset_s)
-    now = InertialFilter(settings, align(recording, found.rest, start))
+    now = InertialFilter(settings, align(recording, found, start, pdr.tilt_gain))
     if corrector is None and not smooth:
         first, footfalls = found.rest.last + 1, resets[stances.footfalls]
         rows = slice(first, footfalls[-1] + 1)

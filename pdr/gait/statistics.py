@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
+from scipy.integrate import trapezoid
 
 from footfall.conventions import GRAVITY
 from footfall.pdr.gait.strides import QUIET_S, RATE_HZ, STILL_RATE, Foot, Stride
@@ -108,8 +109,8 @@ def rectified(foot: Foot) -> np.ndarray:
     product, vertical, samples = np.zeros((3, 3)), np.zeros(3), 0
     for stride in foot.strides:
         accel = foot.signals.accel[stride.first : stride.last + 1]
-        product += np.trapezoid(stride.up[:, :, None] * accel[:, None, :], axis=0)
-        vertical += np.trapezoid(stride.up, axis=0)
+        product += trapezoid(stride.up[:, :, None] * accel[:, None, :], axis=0)
+        vertical += trapezoid(stride.up, axis=0)
         samples += stride.last - stride.first
     # The foot's axes are level when it stands: then the force is g along z.
     standing = np.array([0.0, 0.0, GRAVITY])

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
+from scipy.integrate import cumulative_trapezoid, trapezoid
 from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 from scipy.spatial.transform import Rotation
@@ -179,7 +179,7 @@ def stride_of(signals: Signals, first: int, last: int) -> Stride:
     rate = np.concatenate([gyro[:1], (gyro[1:] + gyro[:-1]) / 2])
     since = Rotation.from_quat(integrate(t, rate, accel).quaternion, scalar_first=True)
     force = since.apply(accel)
-    up = np.trapezoid(force, axis=0)
+    up = trapezoid(force, axis=0)
     up /= np.linalg.norm(up)
     forward = np.array([1.0, 0, 0]) - up[0] * up
     forward /= np.linalg.norm(forward)
@@ -195,7 +195,7 @@ def stride_of(signals: Signals, first: int, last: int) -> Stride:
         swing=first + swing,
         duration=np.nan,
         turn=float(np.arctan2(ahead[1], ahead[0])),
-        step=level @ np.trapezoid(velocity, t, axis=0),
+        step=level @ trapezoid(velocity, t, axis=0),
         up=since.inv().apply(up),
     )
 

@@ -49,6 +49,11 @@ class Piece(Generic[P]):
     given: P
     at: int
 
+    @property
+    def steps(self) -> str:
+        """Each walk is walked by itself: it is a future of its own."""
+        return self.walk
+
 
 @dataclass(frozen=True)
 class Craft(Generic[P, R]):

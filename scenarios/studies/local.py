@@ -70,22 +70,22 @@ def _here(
             tick({}, False)
             yield do(job.task, walks, store)
             continue
-        key = job.task.walk
 
-        def report(metres: float, key: str = key) -> None:
+        def report(metres: float, job: Job[Task] = job) -> None:
             if stop():
                 raise _StoppedError
-            tick({key: metres}, False)
+            tick(dict.fromkeys(job.keys, metres), False)
 
         try:
-            refused = do_walk(job.task, walks, report)
+            refused = do_walk(job.task, walks, report, job.also)
         except _StoppedError:
             return
-        tick({key: math.inf}, False)
-        if refused is None:
-            queue.walked(key)
-        else:
-            yield from (lost(task, refused) for task in queue.fell(key))
+        tick(dict.fromkeys(job.keys, math.inf), False)
+        for key in job.keys:
+            if refused is None:
+                queue.walked(key)
+            else:
+                yield from (lost(task, refused) for task in queue.fell(key))
 
 
 class _Pool:
@@ -172,24 +172,28 @@ class _Pool:
     def _submit(self, pool: ProcessPoolExecutor, job: Job[Task]) -> Future[Any]:
         walks, store = self._folders
         if job.walks:
-            return pool.submit(_walk_job, self._at[job.task.walk], job.task, walks)
+            at = self._at[job.task.walk]
+            self._at |= dict.fromkeys(job.keys, at)
+            return pool.submit(_walk_job, at, job.task, walks, job.also)
         return pool.submit(do, job.task, walks, store)
 
     def _ended(self, job: Job[Task], result: Done | InputError | None) -> Iterator[Done]:
         if isinstance(result, Done):
             yield result
         elif result is None:
-            self._queue.walked(job.task.walk)
+            for key in job.keys:
+                self._queue.walked(key)
         elif job.walks:
             stage = "worker" if result is _ENDED else "walk"
-            yield from (lost(task, result, stage) for task in self._queue.fell(job.task.walk))
+            for key in job.keys:
+                yield from (lost(task, result, stage) for task in self._queue.fell(key))
         else:
             yield lost(job.task, result, "worker")
 
 
-def _walk_job(at: int, task: Task, folder: Path | None) -> InputError | None:
+def _walk_job(at: int, task: Task, folder: Path | None, also: Sequence[Task]) -> InputError | None:
     """In a worker."""
-    return do_walk(task, folder, telling(at))
+    return do_walk(task, folder, telling(at), also)
 
 
 def _warm_job(task: Task, walks: bool) -> None:

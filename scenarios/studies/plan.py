@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -36,11 +36,12 @@ class Entry(NamedTuple):
 
 
 class Walked(NamedTuple):
-    """A walk of the study: metres and seconds, its samples a second, and the tasks on it."""
+    """A walk of the study: metres and seconds, its samples a second, and its steps (`Plan.steps`)."""
 
     metres: float
     seconds: float
     rate_hz: float
+    steps: str
 
 
 @dataclass(frozen=True)
@@ -145,7 +146,8 @@ class _Walks:
             key = self._keys[short] = plan_key(plan, stock_policy())
             pauses = sum(stop.for_s for stop in plan.stops) + plan.calibration_s
             seconds = pauses + plan.route.length / plan.gait.pace_m_s
-            self.found.setdefault(key, Walked(float(plan.route.length), float(seconds), plan.rate_hz))
+            length = float(plan.route.length)
+            self.found.setdefault(key, Walked(length, float(seconds), plan.rate_hz, plan.steps))
         return self._keys[short]
 
 
@@ -226,7 +228,8 @@ def _add(
                 settings.append(
                     Setting(documents, tuple(Cell(own[version], one) for version, one in methods.items()))
                 )
-            task = Task(key, walked, first.number, first.walk_seed, seeds, tuple(settings))
+            steps = walks.found[walked].steps
+            task = Task(key, walked, steps, first.number, first.walk_seed, seeds, tuple(settings))
             there = made.get(key)  # where points differ in what no recording tells
             further = task if there is None else task.without(there.cells)
             if there is not None and further is not None:
@@ -329,9 +332,9 @@ def task_seconds(task: Task, walk: Walked) -> float:
     return a_unit * len(task.seeds)
 
 
-def walk_seconds(walk: Walked) -> float:
-    """About so long takes a walk on one core."""
-    return _WALKING * walk.seconds
+def walk_seconds(walks: Iterable[Walked]) -> dict[str, float]:
+    """Steps -> about so long takes walking them on one core, for all walks of these steps at once."""
+    return {walk.steps: _WALKING * walk.seconds for walk in walks}
 
 
 def cost_of(plan: Plan, tasks: Sequence[Task]) -> Cost:
@@ -345,5 +348,5 @@ def cost_of(plan: Plan, tasks: Sequence[Task]) -> Cost:
         recordings=sum(len(task.seeds) for task in tasks),
         reckonings=sum(len(task.seeds) * len(task.settings) for task in tasks),
         rows=sum(len(task.seeds) * len(task.cells) for task in tasks),
-        seconds=seconds + sum(walk_seconds(plan.walks[key]) for key in keys - cached),
+        seconds=seconds + sum(walk_seconds(plan.walks[key] for key in keys - cached).values()),
     )

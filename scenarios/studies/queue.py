@@ -15,16 +15,29 @@ class OnWalk(Protocol):
     def walk(self) -> str:
         """The key."""
 
+    @property
+    def steps(self) -> str:
+        """Of its steps: walks that differ in mount and rate alone have the same (`Plan.steps`)."""
+
 
 T = TypeVar("T", bound=OnWalk)
 
 
 @dataclass(frozen=True)
 class Job(Generic[T]):
-    """A task, or the walk that it is the first on."""
+    """A task, or the walk that it is the first on.
+
+    `also` : the first tasks on walks of the same steps, which are walked at once.
+    """
 
     task: T
     walks: bool = False
+    also: tuple[T, ...] = ()
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Of the walks."""
+        return (self.task.walk, *(one.walk for one in self.also))
 
 
 class Queue(Generic[T]):
@@ -53,10 +66,13 @@ class Queue(Generic[T]):
         return bool(self._ready or self._to_walk)
 
     def next(self) -> Job[T]:
-        """A task that can be done now, or else the next walk."""
+        """A task that can be done now, or else the next walk, with those of the same steps."""
         if self._ready:
             return Job(self._ready.popleft())
-        return Job(self._waiting[self._to_walk.popleft()][0], walks=True)
+        first, *others = (self._waiting[key][0] for key in self._to_walk)
+        also = tuple(one for one in others if one.steps == first.steps)
+        self._to_walk = deque(one.walk for one in others if one.steps != first.steps)
+        return Job(first, walks=True, also=also)
 
     def walked(self, key: str) -> None:
         """A walk is there: its tasks can be done."""

@@ -188,7 +188,8 @@ class _Watch:
         self._metres: dict[str, float] = {}
         self._worked = 0.0
         self._work = sum(task_seconds(task, plan.walks[task.walk]) for task in left)
-        self._work += sum(walk_seconds(plan.walks[key]) for key in self._to_walk)
+        self._walking = walk_seconds(plan.walks[key] for key in self._to_walk)
+        self._work += sum(self._walking.values())
         recordings = _recordings(plan.tasks)
         self.now = Progress(
             folder=folder,
@@ -222,10 +223,10 @@ class _Watch:
     def say(self, stage: str) -> None:
         """Tell how far it is."""
         metres = sum(self._metres.values())
-        worked = self._worked + sum(
-            walk_seconds(self._walks[key]) * share / self._walks[key].metres
-            for key, share in self._metres.items()
-        )
+        shares = {
+            self._walks[key].steps: walked / self._walks[key].metres for key, walked in self._metres.items()
+        }
+        worked = self._worked + sum(self._walking[steps] * share for steps, share in shares.items())
         self.now = replace(
             self.now, metres=metres, stage=stage, share=min(worked / self._work, 1.0) if self._work else 1.0
         )

@@ -9,7 +9,7 @@ import errno
 import socket
 import time
 import traceback
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
@@ -49,7 +49,7 @@ class Task:
 
     Attributes
     ----------
-    key : hash of all that makes the recordings; walk : that of the walk
+    key : hash of all that makes the recordings; walk : that of the walk; steps : of its steps (`Plan.steps`)
     number, walk_seed : of the walk
     seeds : of each unit and its noise
     settings : which share walk and recordings
@@ -57,6 +57,7 @@ class Task:
 
     key: str
     walk: str
+    steps: str
     number: int
     walk_seed: int
     seeds: tuple[tuple[int, int], ...]
@@ -184,9 +185,16 @@ def _done(task: Task, walks: Path | None, store: Path | None, walk: Walk | None)
 
 
 def do_walk(
-    task: Task, walks: Path | None = None, report: Callable[[float], None] | None = None
+    task: Task,
+    walks: Path | None = None,
+    report: Callable[[float], None] | None = None,
+    also: Sequence[Task] = (),
 ) -> InputError | None:
     """See that the task's walk is in the folder of walks, or tell why it came to no end.
+
+    Parameters
+    ----------
+    also : tasks on walks of the same steps, which are walked at once
 
     Raises
     ------
@@ -194,7 +202,7 @@ def do_walk(
         No room is left.
     """
     trials, _ = next(task.trials())
-    walk = hold(trials[0], walks, report)
+    walk = hold(trials[0], walks, report, (next(one.trials())[0][0] for one in also))
     if isinstance(walk, InputError):
         _require_room(walk)
         return walk

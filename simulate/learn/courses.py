@@ -1,4 +1,4 @@
-"""Courses on which trained walkers are chosen, and others on which the chosen one is judged: who falls?"""
+"""Courses on which trained walkers are chosen, and others on which the chosen one is judged, by falls."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def attempt(
     seconds: float = 60.0,
     threads: int = 2,
 ) -> Verdict:
-    """Let `people` drawn subjects walk each course for so long; whoever falls begins it again.
+    """Let `people` drawn subjects walk each course for so long; after a fall they begin it again.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Following commands of speed and turn rate without falling, and many walkers on threads that do it.
+"""Walkers that follow commands of speed and turn rate without falling: many at once, on threads.
 
 `gymnasium.make_vec("footfall/Walk-v0")` makes the threaded environment, which is what training uses;
 `gymnasium.make` the one of `simulate.walk_env`.
@@ -191,7 +191,7 @@ class CommandedWalkers:
         if n == 0:
             return
         speed, turn = self.draw_commands(n)
-        # Whoever was told to stand is told to go.
+        # A walker that was told to stand is told to go.
         again, _ = self.draw_commands(n, may_stop=False)
         stood = walkers.speed_goal[due] < 0.2
         walkers.speed_goal[due] = np.where(stood, again, speed)

@@ -11,8 +11,6 @@ from typing import Any
 import numpy as np
 import torch
 
-from footfall.errors import InputError
-from footfall.models.policy import Policy
 from footfall.simulate.learn.env import WalkVectorEnv
 
 GAMMA, LAMBDA, CLIP = 0.97, 0.95, 0.2
@@ -55,23 +53,6 @@ class Learner:
         self.optimiser = torch.optim.Adam(self.parameters, lr=4e-4, eps=1e-5)
         self.rate = 4e-4
         self.rng = np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0])
-
-    def adopt(self, policy: Policy) -> None:
-        """Continue from a finished policy, whose value is not known.
-
-        Raises
-        ------
-        InputError
-            A policy of other layers.
-        """
-        layers = [module for module in self.policy if isinstance(module, torch.nn.Linear)]
-        parts = list(zip(policy.weights, policy.biases, strict=True))
-        if [(*layer.weight.shape,) for layer in layers] != [weight.T.shape for weight, _ in parts]:
-            raise InputError("the policy to start from has other layers than this walker's")
-        with torch.no_grad():
-            for layer, (weight, bias) in zip(layers, parts, strict=True):
-                layer.weight.copy_(torch.from_numpy(weight.T.copy()))
-                layer.bias.copy_(torch.from_numpy(bias))
 
     def state(self) -> dict[str, Any]:
         """Everything that a resumed training needs."""
@@ -143,11 +124,8 @@ class Learner:
             batch[f"term_{name}"] = np.array(np.mean([step[name] for step in terms]))
         return batch, observation
 
-    def update(self, batch: dict[str, np.ndarray], schedule: Schedule, *, only_value: bool = False) -> float:
-        """Improve on `batch`; returns the mean KL divergence of the last epoch.
-
-        `only_value` leaves the policy as it is: advantages mean nothing while its value is not known.
-        """
+    def update(self, batch: dict[str, np.ndarray], schedule: Schedule) -> float:
+        """Improve on `batch`; returns the mean KL divergence of the last epoch."""
         n = batch["advantage"].size
         flat = {
             key: torch.from_numpy(batch[key].reshape(n, *batch[key].shape[2:]))
@@ -166,9 +144,7 @@ class Learner:
                     ratio * advantage[rows], ratio.clamp(1 - CLIP, 1 + CLIP) * advantage[rows]
                 ).mean()
                 value_error = ((self.value(seen)[:, 0] - flat["return"][rows]) ** 2).mean()
-                loss = 0.5 * value_error
-                if not only_value:
-                    loss = loss - gain + 0.0045 * (mean**2).sum(1).mean()
+                loss = -gain + 0.5 * value_error + 0.0045 * (mean**2).sum(1).mean()
                 self.optimiser.zero_grad()
                 loss.backward()
                 torch.nn.utils.clip_grad_norm_(self.parameters, 1.0)
@@ -176,9 +152,9 @@ class Learner:
                 with torch.no_grad():
                     divergence.append(float(((ratio - 1) - ratio.log()).mean()))
         last = float(np.mean(divergence[-MINIBATCHES:]))
-        if not only_value and last > KL_HIGH:
+        if last > KL_HIGH:
             self.rate = max(self.rate / 1.3, 5e-5)
-        elif not only_value and last < KL_LOW:
+        elif last < KL_LOW:
             self.rate = self.rate * 1.15
         self.rate = min(self.rate, schedule.rate_max)
         for group in self.optimiser.param_groups:

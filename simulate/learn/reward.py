@@ -63,8 +63,8 @@ def window(phase: np.ndarray, start: float, end: float, ramp: float = 0.03) -> n
 def restless(walkers: Walkers, trace: Trace) -> np.ndarray:
     """(n,) rad/s by which loaded feet turn and tip while they should lie still.
 
-    A foot that is to step rises with its heel, so only the one that the gait stands on counts as tipping; of
-    who has decided to stand, both.
+    A foot that is to step rises with its heel, so only the one that the gait stands on counts as tipping;
+    both do once the walker has decided to stand.
     """
     n, k = walkers.n, walkers.substeps
     rate = trace.sensor[:, :, body.SENSOR_FOOT_RATE].reshape(n, k, 2, 3)

@@ -1,4 +1,4 @@
-"""Stops and restarts on which trained walkers are chosen: who falls, and how still do loaded feet lie?
+"""Stops and restarts on which trained walkers are chosen: by falls, and by how still loaded feet lie.
 
 Drawn people set out, stop, stand, set out again and stop again, on level ground and on slopes (`still_feet`
 says what twist and pitch are).
@@ -68,7 +68,7 @@ def attempt_stops(
     threads: int = 2,
     slopes: tuple[tuple[float, float], ...] = SLOPES,
 ) -> StopVerdict:
-    """Let `people` drawn subjects stop twice on each slope; whoever falls or does not stop is out.
+    """Let `people` drawn subjects stop twice on each slope; one that falls or does not stop is out.
 
     Parameters
     ----------

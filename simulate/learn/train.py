@@ -5,9 +5,6 @@ PPO. The difficulty rises from straight walking to everything, and everything st
 walker that is taught one thing at a time forgets the others. Stage 3 lets the last checkpoints walk fixed
 courses, stop and set out again, keeps the best one as DIR/walker.npz, and judges it on other courses and with
 other people. Needs `pip install footfall[train]`.
-
-With `--start FILE` a finished walker learns on, with its gains: the second half of the samples, after its
-value has been learnt from the first few.
 """
 
 from __future__ import annotations
@@ -43,7 +40,6 @@ from footfall.tables import replacing
 
 ENVS = 64
 _CANDIDATES, _REPEATS, _TRIAL_S = 16, 4, 6.0
-_VALUE_FIRST = 300_000  # samples, of a policy that learns on
 _EXCESS_WEIGHT = 0.5  # of a degree, beside one fall an hour or one in a hundred stops
 _KEEP_FROM, _KEEP_EVERY = 0.6, 0.05  # of the planned samples: checkpoints among which the best is chosen
 
@@ -112,24 +108,14 @@ def save_policy(learner: Learner, gains: np.ndarray, path: Path, meta: dict[str,
         np.savez(file, **arrays)
 
 
-def train(
-    out: Path, seed: int, samples: int, generations: int, threads: int, start: Path | None = None
-) -> None:
-    """Train, or resume in `out`; writes checkpoint.pt, policy.npz (every ~0.5 M samples) and log.jsonl.
-
-    A policy to `start` from counts as trained with half of the samples.
-    """
+def train(out: Path, seed: int, samples: int, generations: int, threads: int) -> None:
+    """Train, or resume in `out`; writes checkpoint.pt, policy.npz (every ~0.5 M samples) and log.jsonl."""
     torch.set_num_threads(1)
     out.mkdir(parents=True, exist_ok=True)
     learner = Learner(N_OBSERVATION, N_ACTION, seed)
     checkpoint, gains_file = out / "checkpoint.pt", out / "gains.npy"
-    finished = None if start is None else load_policy(start)
-    begin = 0 if finished is None else samples // 2
-    done = begin
-    if finished is not None:
-        learner.adopt(finished)
-        gains = finished.feedback_gains
-    elif gains_file.exists():
+    done = 0
+    if gains_file.exists():
         gains = np.load(gains_file)
     else:
         gains = tune_gains(seed, generations, threads)
@@ -146,8 +132,7 @@ def train(
         level, bounds = schedule(done, samples)
         env.commanded.difficulty = replace(env.commanded.difficulty, level=level)
         batch, observation = learner.collect(env, observation)
-        young = finished is not None and done < begin + _VALUE_FIRST
-        divergence = learner.update(batch, bounds, only_value=young)
+        divergence = learner.update(batch, bounds)
         done += batch["advantage"].size
         iteration += 1
         if iteration % 20 and done < samples:
@@ -171,8 +156,6 @@ def train(
             torch.save({"learner": learner.state(), "samples": done}, temporary)
         meta: dict[str, Any] = {"seed": seed, "samples": done}
         meta |= {"samples_planned": samples, "generations": generations}
-        if finished is not None:
-            meta |= {"start": finished.digest, "start_samples": begin}
         save_policy(learner, gains, out / "policy.npz", meta)
         part = done / samples
         if part >= _KEEP_FROM:
@@ -236,7 +219,6 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--samples", type=float, default=14e6, help="control steps to learn from")
     parser.add_argument("--generations", type=int, default=160, help="of CMA-ES for the feedback gains")
-    parser.add_argument("--start", type=Path, help="a walker.npz that learns on, instead of nothing")
     parser.add_argument("--threads", type=int, default=2, help="for the physics")
     arguments = parser.parse_args()
     train(
@@ -245,7 +227,6 @@ def main() -> None:
         int(arguments.samples),
         arguments.generations,
         arguments.threads,
-        arguments.start,
     )
     choose(arguments.out, arguments.threads)
 

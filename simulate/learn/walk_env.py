@@ -39,16 +39,16 @@ class WalkEnv(gym.Env[np.ndarray, np.ndarray]):
 
     Observation: Box(-6, 6, (88,), float32), mirrored so that the stance leg is always the right one: height,
     gravity in the pelvis, velocities, joint angles and rates, foot pressure, step phase, commands, residual,
-    grade, gait variability, gate of standing (`simulate.observation.LAYOUT`). Action: Box(-1, 1, (17,),
-    float32), residual on the joint servos' targets, held for 30 ms. Reward: `simulate.reward`. A fall
-    terminates the episode, and so does leaving the path by 1.5 m; the end of the path truncates it, and so
-    does gymnasium's time limit: 10 s unless `max_episode_steps` says otherwise (see docs/environment.md).
+    grade, gait variability, gate of standing (`simulate.walker.observation.LAYOUT`). Action: Box(-1, 1,
+    (17,), float32), residual on the joint servos' targets, held for 30 ms. Reward: `simulate.learn.reward`. A
+    fall terminates the episode, and so does leaving the path by 1.5 m; the end of the path truncates it, and
+    so does gymnasium's time limit: 10 s unless `max_episode_steps` says otherwise (see docs/environment.md).
 
     Parameters
     ----------
     scenario : what an episode is about when `reset` is not told: None, random commands; a `Plan`; or a
         scenario's name or file
-    subject : who walks when `reset` is not told: a stock name, "drawn" (somebody else in each episode), a
+    subject : who walks when `reset` is not told: a stock name, "drawn" (another person in each episode), a
         `Subject`; None is the scenario's own or, with random commands, the reference body with habits drawn
     difficulty : of the random commands
     feedback_gains : (32,) balance feedback under the action; those of the shipped policy when None

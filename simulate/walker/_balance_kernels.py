@@ -29,7 +29,7 @@ GO_SPEED = 0.2  # m/s; a commanded speed above it is a wish to walk
 _RESIDUAL_LIMIT = 2.0  # of action scale, feedback included
 _BRAKE = 0.2  # rad per m/s
 _STOP_SPEED = CREEP + 0.05
-_STEEP = 0.065  # who stops on steeper slopes needs all its torque, or falls half as often again
+_STEEP = 0.065  # on steeper slopes a stop needs all the torque, or half as many again fall
 _GATE_DOWN_S, _GATE_UP_S, _FIRST_GATE_UP_S = 0.23, 0.35, 0.40
 _PENDULUM_S = 0.31  # sqrt(height of the centre of mass / g)
 _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
@@ -246,7 +246,7 @@ def standing_offset(s, stand, j):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
-    """Stop or go; who stops keeps its feet where they are."""
+    """Decide to stop or to go; a walker that stops keeps its feet where they are."""
     off_balance = (np.abs(stand.capture_forward - 0.005) > 0.115 + 0.3 * stand.stagger) | (
         np.abs(stand.capture_left) > stand.width / 2 + 0.035
     )

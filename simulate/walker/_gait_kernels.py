@@ -64,7 +64,7 @@ def stride(s):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def slew(s):  # type: ignore[no-untyped-def]
-    """Variability goes to its goals; who is about to stop widens its steps."""
+    """Move the variability towards its goals; a walker about to stop widens its steps."""
     braking = (s.speed_goal < 0.2) & (s.speed < 0.6) & np.logical_not(s.closing)
     widen = choose(braking, _WIDER, 0.0)
     for i in range(5):
@@ -99,7 +99,7 @@ def row_at(ref, phase):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def targets(s, ref, rows, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (k, 17) rad with the servo targets of the k physics steps; `rows` (k,) is to scribble on."""
+    """Fill `out` (k, 17) rad with the servo targets of the k physics steps; `rows` (k,) is working space."""
     count = len(out)
     resting = s.closing & (s.gate <= 0)
     for i in range(count):

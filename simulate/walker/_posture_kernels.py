@@ -75,7 +75,7 @@ def along_heading(s):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def wanted(s):  # type: ignore[no-untyped-def]
-    """Speed to go to (m/s): as commanded, but who wishes to stand and drifts backwards creeps on instead."""
+    """Speed to reach (m/s): as commanded, but a walker that is to stand and drifts backwards creeps on."""
     creep = clip(-_AGAINST_DRIFT * s.mean_velocity[0], 0.0, CREEP)
     return choose(s.closing, s.speed_goal, np.maximum(s.speed_goal, creep))
 
@@ -95,8 +95,8 @@ def settle(s):  # type: ignore[no-untyped-def]
     turn = s.turn + clip(s.turn_goal - s.turn, -TURN_SLEW * s.dt, TURN_SLEW * s.dt)
     s.turn = choose(s.gate < 0.5, 0.0, turn)
     along, across = along_heading(s)
-    # The mean moves with the command, or whoever follows a falling one would seem too fast, and be braked
-    # until it walks backwards.
+    # The mean moves with the command. Else a walker that follows a falling one would seem too fast, and be
+    # braked until it walks backwards.
     s.mean_velocity[0] += change + (along - s.mean_velocity[0]) * (s.dt / _MEAN_VELOCITY_S)
     s.mean_velocity[1] += (across - s.mean_velocity[1]) * (s.dt / _MEAN_VELOCITY_S)
 

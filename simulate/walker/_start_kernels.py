@@ -61,7 +61,7 @@ def loads(s):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def set_out(s, wish, step_phase):  # type: ignore[no-untyped-def]
-    """Shift the weight of who stands and wishes to walk; True once the first step may begin."""
+    """Shift the weight of a standing walker that is to walk; True once the first step may begin."""
     begins = s.closing & (s.gate <= 0) & wish
     s.left_first = choose(begins, s.left_stance, s.left_first)
     right, left = loads(s)
@@ -116,7 +116,7 @@ def bound_foot(s, ref, out, stands, stance, load, servo, joint):  # type: ignore
 
 @register_jitable
 def hold_feet(s, ref, out):  # type: ignore[no-untyped-def]
-    """Bound the servo targets `out` (k, 17) of who sets out or stops so that loaded feet lie still."""
+    """Bound the servo targets `out` (k, 17) while setting out or stopping, so that loaded feet lie still."""
     right, left = loads(s)
     stands, stance = np.logical_not(s.left_first), np.logical_not(s.left_stance)
     bound_foot(s, ref, out, stands, stance, right, _RIGHT, _RIGHT_JOINT)

@@ -1,4 +1,4 @@
-"""Pushes at the trunk: a test of robustness, and the only external force there can be. Off by default."""
+"""Pushes at the trunk: a test of robustness, and the only possible external force. Off by default."""
 
 from __future__ import annotations
 

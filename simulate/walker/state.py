@@ -13,8 +13,6 @@ import numpy as np
 
 from footfall.models import body
 
-N_SENSOR = body.SENSOR_TOUCH.stop  # what control reads; sensors of the IMU come after
-
 # Residual (rad) for an action of 1.
 ACTION_SCALE = 3.3 * np.array([0.2, 0.2, 0.2] + [0.35, 0.25, 0.25, 0.35, 0.25, 0.15] * 2 + [0.2, 0.2])
 
@@ -31,7 +29,7 @@ WALKER = np.dtype(
         # the body, after the last physics step
         ("qpos", float, 7 + body.N_JOINTS),
         ("qvel", float, 6 + body.N_JOINTS),
-        ("sensor", float, N_SENSOR),
+        ("sensor", float, body.N_SENSOR),
         ("fresh", bool),  # no physics yet, so no sensors
         ("up", float, 3),  # against gravity, in the frame of qpos
         ("ground", float),  # m, height under the pelvis

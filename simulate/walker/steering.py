@@ -1,4 +1,4 @@
-"""Steering along a route: pure pursuit, slowing down for what is sharp, stops, and the slow wander of people.
+"""Steering along a route: pure pursuit, slowing down for sharp turns, stops, and the slow wander of people.
 
 In the units of the walker (the 1.75 m body: models.subject).
 """
@@ -44,7 +44,7 @@ def pace_along(route: Route, pace: float, changes: tuple[Pace, ...]) -> np.ndarr
 
 
 def speed_limits(route: Route, pace: np.ndarray) -> np.ndarray:
-    """(n,) m/s at each sample of the route: the pace there (n,), less in bends and before what is slower."""
+    """(n,) m/s at each sample of the route: the pace there (n,), less in bends and before slower parts."""
     turning = np.abs(np.diff(route.heading, append=route.heading[-1]))
     spacing = np.diff(route.s, append=route.s[-1] + 1.0)
     # An un-rounded corner is a jump of the heading: as sharp as if taken over half a metre.
@@ -106,7 +106,7 @@ class Pursuit:
 
     @property
     def ending(self) -> bool:
-        """The route has been walked: only to stop is left."""
+        """The route has been walked; only the stop is left."""
         return len(self._stops) <= 1 and self._stopping
 
     def command(
@@ -134,7 +134,7 @@ class Pursuit:
         bearing = math.remainder(math.atan2(aim_y - y, aim_x - x) - heading, 2 * math.pi)
         turn = min(max(_BEARING_GAIN * bearing, -TURN_LIMIT), TURN_LIMIT)
         told = self._speed(float(speed), standing)
-        return told, turn if told > 0 else 0.0  # who stops does not turn any more
+        return told, turn if told > 0 else 0.0  # a walker that stops turns no more
 
     def _speed(self, speed: float, standing: bool) -> float:
         wanted = float(self._limit[self._row])
@@ -144,7 +144,7 @@ class Pursuit:
         if not self._stops:
             return wanted
         stop = self._stops[0]
-        # A stop is one wish, in good time, and not a slow walk towards a line.
+        # A stop is commanded once, in good time: the walker does not creep towards a line.
         if not self._stopping and stop.at_m - self.progress > speed**2 / (2 * STOPPING) + _LAST_STEP:
             return wanted
         self._stopping = True

@@ -51,7 +51,7 @@ class Trace(NamedTuple):
 
 @dataclass(frozen=True)
 class Gate:
-    """Who walks and who stands.
+    """Which walkers walk and which stand.
 
     Attributes
     ----------

@@ -5,11 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from benchmarks.papers import _false_bias, iez_false_bias
+from benchmarks.papers import _false_bias, iez_false_bias, iez_ways
 from benchmarks.speed import filter as filter_speed
 from footfall.hdr.methods import Reckoning
+from footfall.hdr.tracks import iez_track, pdr_track
 from footfall.pdr.detectors import DETECTORS
-from footfall.pdr.reckoning import PdrParams
+from footfall.pdr.filter.ins import FilterSettings
+from footfall.pdr.reckoning import PdrParams, dead_reckon
 from footfall.scenarios.trial import perform
 from tests.helpers.synthetic_foot import walk
 
@@ -113,3 +115,27 @@ def test_filter_speed_tells_every_case(tmp_path, monkeypatch):
     found = json.loads(out.read_text())["ns_a_sample"]
     assert all(value > 0 for value in found.values())
     assert {"compiled, one update a stance", "numpy twin, an update every still sample"} <= set(found)
+
+
+def test_ways_beside_the_default_are_the_default_but_for_what_they_change(feet):
+    """Stance by stance, the default is what the package's own run makes; every other way is another track."""
+    _, found = feet
+    own = iez_track(found.reckoning, FilterSettings(), name="iez")
+    made = {name: iez_ways.track(found.reckoning, way) for name, way in iez_ways.WAYS.items()}
+    default, *others = made.values()
+    np.testing.assert_allclose(default.position, own.position, atol=1e-9)
+    np.testing.assert_allclose(default.heading, own.heading, atol=1e-12)
+    for other in others:
+        assert np.abs(other.heading - own.heading).max() > 1e-9
+
+
+def test_a_foot_that_slides_is_seen_to_slide():
+    """What zero velocity overlooks is what the strides lack: here 20 mm/s forward, all along the walk."""
+    truth = walk(np.zeros(42), rocking=0.0)
+    found = pdr_track(dead_reckon(truth.recording()))
+    place = truth.position[truth.at(found.t)][:, :2]
+    moved = place + 0.02 * found.t[:, None] * [1.0, 0.0]
+    still, slid = iez_ways.slid(found, place), iez_ways.slid(found, moved)
+    assert still.level == pytest.approx(0.0, abs=1e-3)
+    assert slid.level - still.level == pytest.approx(0.02, abs=1e-4)
+    assert np.isnan(slid.up)

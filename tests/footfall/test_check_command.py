@@ -1,10 +1,12 @@
 """`footfall check`: what it prints, and how it ends."""
 
+import shlex
 import sys
 
 import numpy as np
 import pytest
 
+from footfall.cli.terminal import words_of
 from footfall.hdr import check as module
 from footfall.hdr.check import synthetic_case
 from footfall.hdr.methods import METHODS
@@ -107,6 +109,18 @@ def test_a_program_is_checked(cli, folder):
     code, out, _ = cli(line.replace("{start}", "{params}") + " --json")
     assert code == 1
     assert "KeyError: 'heading_rad'" in one_document(out)["checks"][0]["reason"]
+
+
+@pytest.mark.parametrize(
+    "line", ["./nav --in {recording} --out {track}", "nav 'a b' \"c d\" e\\ f '' # g,h;i>j", "nav '#'"]
+)
+def test_a_program_is_given_in_the_words_of_a_shell(line):
+    assert words_of(line, "\\") == shlex.split(line)
+
+
+def test_where_paths_have_backslashes_they_stay():
+    words = words_of(r'C:\nav\nav.exe "C:\my files\nav.py" {recording} --out={track}', "")
+    assert words == [r"C:\nav\nav.exe", r"C:\my files\nav.py", "{recording}", "--out={track}"]
 
 
 @pytest.mark.parametrize(

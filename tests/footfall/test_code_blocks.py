@@ -46,6 +46,7 @@ OTHERS = {
     "source",
     "dask",
     "kubectl",
+    "uv",
 }
 # They run here: what they need is made by others before them, and takes no walk.
 RUN = {"list", "parameters", "sample", "inspect", "record", "track", "score", "export"}

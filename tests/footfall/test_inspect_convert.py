@@ -1,8 +1,12 @@
 """`footfall inspect` and `footfall convert`: what a recording holds, and the same in Footfall's own form."""
 
+import io
+import sys
+
 import numpy as np
 import pytest
 
+from footfall.cli.app import main
 from footfall.formats import read
 from footfall.formats.inspect import bars, inspect
 from footfall.recording import read_recording
@@ -33,6 +37,18 @@ def test_a_recording_is_looked_into(foot, file):
     assert found.refused == ""
     assert found.turning[:10].strip() == ""
     assert "█" in found.turning
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "ascii", "utf-8"])
+def test_a_file_or_pipe_of_another_encoding_gets_what_it_can_hold(file, encoding, monkeypatch):
+    """As where standard output of Windows goes into a file."""
+    with io.TextIOWrapper(io.BytesIO(), encoding=encoding) as out:
+        monkeypatch.setattr(sys, "stdout", out)
+        assert main(["inspect", str(file)]) == 0
+        out.flush()
+        lines = out.buffer.getvalue().decode(encoding).splitlines()
+    (turns,) = [line for line in lines if line.startswith("turns")]
+    assert ("█" if encoding == "utf-8" else "?") in turns
 
 
 def test_the_command_shows_it(cli, file):

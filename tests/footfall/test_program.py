@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -104,6 +105,8 @@ def of(packages, modules):
 
 # What takes a tenth of a second or more to import.
 HEAVY = {"numba", "scipy", "mujoco", "gymnasium", "matplotlib", "torch", "pandas", "plotly", "pyarrow"}
+# Arrow before 26 asks pandas, where it is installed, whether an array is one of its own.
+PANDAS = {"pandas"} if int(version("pyarrow").split(".")[0]) < 26 else set()
 
 
 def test_importing_the_command_line_loads_nothing_heavy(tmp_path):
@@ -126,7 +129,7 @@ def test_importing_the_command_line_loads_nothing_heavy(tmp_path):
 )
 def test_a_short_command_loads_only_what_it_needs(here, line, needed):
     modules = loaded(f"from footfall.cli.app import main\nassert main({shlex.split(line)!r}) == 0", here)
-    assert of(HEAVY - needed, modules) == []
+    assert of(HEAVY - needed - (PANDAS if "pyarrow" in needed else set()), modules) == []
     assert of({"scipy.signal", "scipy.stats", "scipy.optimize", "scipy.interpolate"}, modules) == []
 
 

@@ -35,7 +35,9 @@ class Watching:
             self.texts[name] = report.longreprtext + report.capstdout
 
     def pytest_warning_recorded(self, warning_message):
-        self.warnings.append(str(warning_message.message))
+        # Several runs in one process find the plug-in imported, which pytest may tell.
+        if warning_message.category is not pytest.PytestAssertRewriteWarning:
+            self.warnings.append(str(warning_message.message))
 
 
 @pytest.fixture(scope="module")

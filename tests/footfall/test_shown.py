@@ -7,7 +7,7 @@ from footfall import Recording, Track
 from footfall.scenarios.evaluate import Rows
 from footfall.scenarios.judge.score import Score
 from footfall.scenarios.trial import Row
-from footfall.shown import STYLE, plot, styled, table_html, to_pandas
+from footfall.shown import STYLE, styled, table_html
 
 mpl = pytest.importorskip("matplotlib")
 mpl.use("agg")
@@ -79,12 +79,12 @@ def test_scores_in_pandas():
     assert len(Rows(()).to_pandas()) == 0
 
 
-def test_a_walk_is_shown_by_the_functions(workshop):
+def test_a_walk_in_pandas_as_a_table_and_drawn(workshop):
     from footfall.simulate.walk import read_walk
     from footfall.tables import read_table, read_units
 
     walk = read_walk(workshop / "walk.parquet")
-    frame = to_pandas(walk)
+    frame = walk.to_pandas()
     columns, meta = read_table(workshop / "walk.parquet")
     assert list(frame) == list(columns)
     for name, values in columns.items():
@@ -92,11 +92,14 @@ def test_a_walk_is_shown_by_the_functions(workshop):
     units = read_units(workshop / "walk.parquet")
     assert frame.attrs["units"] == {name: unit for name, unit in units.items() if unit}
     assert frame.attrs["meta"] == meta
-    axes = plot(walk)
+    axes = walk.plot()
     x, y = axes[0].lines[0].get_data()
     np.testing.assert_array_equal(x, walk.footfalls.position[:, 0])
     np.testing.assert_array_equal(y, walk.footfalls.position[:, 1])
     assert 1.5 < np.ptp(axes[1].lines[0].get_xdata()) < 4  # two strides
+    told = walk._repr_html_()
+    assert f"Walk: {len(walk.t):,} rows" in told
+    assert "<th>px<br><small>m</small></th>" in told
 
 
 def test_tables_of_html():

@@ -2,6 +2,7 @@
 
 import gzip
 import io
+import os
 import zipfile
 
 import numpy as np
@@ -247,9 +248,8 @@ def test_a_long_cell_that_is_no_number_is_cut_short_where_it_is_told(foot, tmp_p
     assert len(told) < 120
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
 def test_what_is_no_file_is_told_as_what_it_is(tmp_path):
-    import os
-
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "loop").symlink_to(tmp_path / "loop")
     (tmp_path / "gone").symlink_to(tmp_path / "nothing")

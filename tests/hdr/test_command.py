@@ -1,15 +1,18 @@
 """A method that is a program: what it is told, what it writes, and how its failures are told."""
 
+import os
 import pickle
 import stat
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from footfall.errors import InputError
+from footfall.hdr import command
 from footfall.hdr.methods import Reckoning, find_method, tracks
 from footfall.pdr.reckoning import PdrParams, StartPose
 from footfall.recording import Recording
@@ -127,6 +130,7 @@ def test_a_program_that_fails_is_told(reckoning, program, text, sentence):
     assert str(refused.value).startswith(f"{Path(sys.executable).name} nav.py: {sentence}")
 
 
+@pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="needs /proc")
 def test_a_program_that_hangs_is_ended_with_all_that_it_started(reckoning, program, tmp_path):
     """A child of its own, which would hold a pipe open, and go on for ever."""
     text = (
@@ -150,6 +154,37 @@ def test_a_program_that_hangs_is_ended_with_all_that_it_started(reckoning, progr
         time.sleep(0.05)
     else:
         pytest.fail("the child goes on")
+
+
+TASKKILL = """#!{python}
+import os, signal, sys
+open({told!r}, "w").write(" ".join(sys.argv[1:]))
+os.kill(int(sys.argv[-1]), signal.SIGTERM)
+"""
+
+
+@pytest.mark.parametrize("tool", ["taskkill", None])
+def test_a_program_that_hangs_is_ended_where_there_are_no_groups(
+    reckoning, program, tmp_path, monkeypatch, tool
+):
+    """On Windows a tool ends what a program has started; without it the program itself is ended."""
+    if tool is not None:
+        (tmp_path / "bin").mkdir()
+        file = tmp_path / "bin" / tool
+        file.write_text(TASKKILL.format(python=sys.executable, told=str(tmp_path / "told")))
+        file.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    monkeypatch.setattr(command, "sys", SimpleNamespace(platform="win32"))
+    monkeypatch.delattr(command.os, "killpg", raising=False)
+    text = f"import os, time\nopen({str(tmp_path / 'pid')!r}, 'w').write(str(os.getpid()))\ntime.sleep(600)\n"
+    method = find_method(command=program(text, "{recording}", "{track}"), timeout_s=2.0)
+    with pytest.raises(InputError, match=r"still running after 2 s$"):
+        method.track(reckoning)
+    pid = (tmp_path / "pid").read_text()
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(pid), 0)
+    if tool is not None:
+        assert (tmp_path / "told").read_text() == f"/F /T /PID {pid}"
 
 
 def test_a_program_leaves_no_files(reckoning, program, tmp_path, monkeypatch):

@@ -1,13 +1,16 @@
 """The body: masses, mirror symmetry, and nothing but contact and gravity acting on it."""
 
+import math
+
 import mujoco
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from footfall.errors import InputError
-from footfall.models.body import JOINTS, N_JOINTS, SERVO_JOINT, SERVOS, build_body
+from footfall.models.body import JOINTS, N_JOINTS, SERVO_JOINT, SERVOS, build_body, sensor_imu
 from footfall.models.gait import TABLE, reference_angles
 from footfall.models.mount import MOUNTS, Mount
 from footfall.models.route import Ground
@@ -145,16 +148,38 @@ def test_scenery_is_drawn_at_its_height_and_touches_nothing() -> None:
         assert start[2] - distance == pytest.approx(0.05 * (at + 5), abs=1e-5)
 
 
-@pytest.mark.parametrize("name", MOUNTS)
-def test_mounts_give_imu_sensors_on_their_foot(name: str) -> None:
-    mount = MOUNTS[name]
-    model = build_body(Build(), timestep=STEP, mount=mount)
+def test_mounts_give_imu_sensors_on_their_leg() -> None:
+    model = build_body(Build(shank=1.1), timestep=STEP, mounts=tuple(MOUNTS.values()))
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    foot = data.body(f"foot_{mount.foot[0]}").xpos
-    np.testing.assert_allclose(data.sensor("imu_pos").data - foot, mount.position, atol=1e-12)
-    nose_down = -np.degrees(np.arcsin(data.site("imu").xmat.reshape(3, 3)[2, 0]))
-    assert nose_down == pytest.approx(mount.euler_deg[1], abs=1e-9)
+    for k, mount in enumerate(MOUNTS.values()):
+        ankle = data.body(f"foot_{mount.foot[0]}").xpos
+        pose = data.sensordata[sensor_imu(k)]
+        np.testing.assert_allclose(pose[:3] - ankle, mount.position, atol=1e-12)
+        turned = Rotation.from_euler("ZYX", mount.euler_deg[::-1], degrees=True)
+        assert (Rotation.from_quat(pose[3:], scalar_first=True).inv() * turned).magnitude() < 1e-9
+        assert data.sensor(f"imu_{k}_pos").data.tolist() == pose[:3].tolist()
+
+
+def test_the_shank_bends_at_the_ankle_below_its_imu() -> None:
+    shank, instep = MOUNTS["shank-left"], MOUNTS["instep-left"]
+    model = build_body(Build(), timestep=STEP, mounts=(shank, instep))
+    data = mujoco.MjData(model)
+    poses = []
+    for angle in (0.0, 0.3):
+        data.joint("ankle_l").qpos = angle
+        mujoco.mj_forward(model, data)
+        poses.append([data.sensordata[sensor_imu(k)].copy() for k in (0, 1)])
+    assert poses[0][0].tolist() == poses[1][0].tolist()
+    assert np.linalg.norm(poses[1][1][:3] - poses[0][1][:3]) == pytest.approx(
+        2 * math.sin(0.15) * math.hypot(*instep.position), rel=1e-6
+    )
+
+
+def test_the_rest_of_a_shank_is_that_of_its_foot() -> None:
+    assert [mount.on_foot for mount in MOUNTS.values()] == [
+        *(MOUNTS[name] for name in ("instep", "medial", "heel", "instep-left", "instep", "instep-left"))
+    ]
 
 
 @pytest.mark.parametrize(
@@ -173,5 +198,7 @@ def test_bodies_that_the_walker_cannot_carry_are_refused(change: dict, message: 
 def test_a_mount_on_no_foot_is_refused() -> None:
     with pytest.raises(InputError, match="foot = 'middle'"):
         Mount(foot="middle")
+    with pytest.raises(InputError, match="segment = 'thigh', expected 'foot' or 'shank'"):
+        Mount(segment="thigh")
     with pytest.raises(InputError, match="finite"):
         Mount(position=(0.0, float("nan"), 0.0))

@@ -12,7 +12,16 @@ from scipy.spatial.transform import Rotation
 from footfall.errors import InputError
 from footfall.pdr.filter._plain import PlainFilter
 from footfall.pdr.filter.ins import FilterSettings, InertialFilter, frozen
-from footfall.pdr.filter.layout import ERROR, HEADING, STATE, STATES, VELOCITY, Measurement
+from footfall.pdr.filter.layout import (
+    ERROR,
+    G_SENSITIVITY,
+    GYRO_BIAS,
+    HEADING,
+    STATE,
+    STATES,
+    VELOCITY,
+    Measurement,
+)
 from tests.helpers.filter_walks import alignment, tossed
 
 KINDS = {
@@ -23,6 +32,10 @@ KINDS = {
     "everything": FilterSettings(zaru=True, g_sensitivity=True, heading_sd=0.2),
     "everything turns": FilterSettings(zaru=True, g_sensitivity=True, velocity_turns=True),
 }
+
+
+# The direction of the body that counts as the vertical: that of the rest, or another.
+VERTICALS = {"rest": None, "walk": np.array([-0.9, 0.2, 1.6])}
 
 
 def assert_same(a, b, rtol=1e-8):
@@ -36,11 +49,13 @@ def assert_same(a, b, rtol=1e-8):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_compiled_equals_plain(kind):
+@pytest.mark.parametrize("vertical", VERTICALS)
+def test_compiled_equals_plain(kind, vertical):
     t, gyro, accel, update = tossed(1)
     # Updates that are believed little: motion that is called rest would amplify rounding beyond bounds.
     kind = replace(KINDS[kind], sigma_velocity=1.0, sigma_rate=5.0)
-    compiled, plain = InertialFilter(kind, alignment()), PlainFilter(kind, alignment())
+    start = replace(alignment(), vertical=VERTICALS[vertical])
+    compiled, plain = InertialFilter(kind, start), PlainFilter(kind, start)
     for half in (slice(0, 200), slice(200, 400)):
         compiled.advance(t[half], gyro[half], accel[half], update[half])
         for k in range(*half.indices(400)):
@@ -137,6 +152,27 @@ def test_an_update_is_the_same_in_the_batch_and_by_hand():
         np.testing.assert_array_equal(asked.covariance, flagged.covariance)
         np.testing.assert_array_equal(asked.position, flagged.position)
         np.testing.assert_allclose(asked.velocity, before + put_right[VELOCITY])
+
+
+@pytest.mark.parametrize("vertical", VERTICALS)
+def test_zero_velocity_touches_nothing_that_turns_about_the_vertical(vertical):
+    """Not the heading, nor the gyro's bias and g-sensitivity about the body's vertical; the rest it does."""
+    start = replace(alignment(), vertical=VERTICALS[vertical])
+    known = start.force if vertical == "rest" else VERTICALS[vertical]
+    up = known / np.linalg.norm(known)
+    np.testing.assert_allclose(start.up, up, atol=1e-15)
+    found = InertialFilter(KINDS["everything"], start)
+    put_right = 0.0
+    for rows in (slice(0, 150), slice(150, 300), slice(300, 400)):  # in three attitudes
+        t, gyro, accel, _ = (column[rows] for column in tossed(7))
+        found.advance(t, gyro, accel, np.zeros(len(t), dtype=int))
+        put_right = put_right + found.rest(1)
+    assert put_right[HEADING] == pytest.approx(0.0, abs=1e-12)
+    assert up @ put_right[GYRO_BIAS] == pytest.approx(0.0, abs=1e-12)
+    assert np.abs(put_right[GYRO_BIAS]).max() > 1e-4
+    g = put_right[G_SENSITIVITY].reshape(3, 3)
+    np.testing.assert_allclose(up @ g, 0.0, atol=1e-12)
+    assert np.abs(g).max() > 1e-6
 
 
 @given(

@@ -52,4 +52,4 @@ def test_the_papers_filter_turns_by_itself_and_the_default_does_not(real, name):
         return abs(np.degrees(off)) / (t[-1] - t[0])
 
     assert turned(FilterSettings.paper()) > 0.2
-    assert turned(FilterSettings()) < 0.02
+    assert turned(FilterSettings()) < 0.006

@@ -93,7 +93,7 @@ def test_the_place_is_as_uncertain_at_the_first_footfall_as_the_way_to_it_leaves
     truth, start = pivoted(10 * DEG)
     recording = truth.recording()
     found = detect(recording, PdrParams())
-    now = InertialFilter(FilterSettings(), align(recording, found.rest, start))
+    now = InertialFilter(FilterSettings(), align(recording, found, start))
     assert not now.covariance[:3, :3].any()
     rows = slice(found.rest.last + 1, found.stances.resets[found.stances.footfalls[0]] + 1)
     update = updates(recording.t, found, None)[rows]

@@ -22,7 +22,10 @@ from footfall.scenarios.parameters import documents, with_values
 from footfall.scenarios.scenario import build_scenario, load_scenario
 from footfall.scenarios.trial import Trial, find, perform, recording_of, setup, start_pose, walk_of
 from footfall.simulate import cache
+from footfall.simulate.episode import FallError
+from footfall.simulate.identity import mount_name, walk_identity
 from footfall.simulate.record import record
+from tests.helpers.synthetic import synthetic_walk
 
 
 def stands_still(recording, start):
@@ -186,6 +189,46 @@ def test_walks_are_shared_by_whatever_changes_no_walk(short, monkeypatch, tmp_pa
     slower = setup(short.changed("gait", pace_m_s=1.1), methods=["pdr"])
     list(execute([Trial(slower, 0, 3, 5, 5)], workers=1))
     assert sorted(walked) == [3, 3, 4]
+
+
+@pytest.fixture
+def passes(monkeypatch):
+    """The plans that were walked in each pass of the physics, by a walker whose every walk is synthetic."""
+    found, walk = [], synthetic_walk(strides=12)
+
+    def walks(plans, policy, on_progress):
+        found.append([(mount_name(plan.mount), plan.rate_hz, plan.seed) for plan in plans])
+        if plans[0].seed == 5:
+            raise FallError("the walker fell")
+        for plan in plans:
+            yield replace(walk, meta=walk.meta | walk_identity(plan, policy).as_dict())
+
+    monkeypatch.setattr(cache, "walks", walks)
+    return found
+
+
+def mounted(short, seeds):
+    """Trials of two mounts, one of them at two rates, on walks of these seeds."""
+    worn = [{"mount": "instep"}, {"mount": "shank"}, {"mount": "shank", "rate_hz": 100.0}]
+    made = [setup(short.changed("sensor", **one), imu="perfect", methods=["pdr"]) for one in worn]
+    return [Trial(one, 0, seed, 7, 7) for seed in seeds for one in made]
+
+
+def test_mounts_and_rates_of_the_same_steps_are_walked_at_once(short, passes, tmp_path, monkeypatch):
+    monkeypatch.setattr(cache, "cache_folder", lambda: tmp_path)
+    outcomes = list(execute(mounted(short, [3, 4]), workers=1))
+    assert passes == [
+        [("instep", 200.0, seed), ("shank", 200.0, seed), ("shank", 100.0, seed)] for seed in (3, 4)
+    ]
+    assert [outcome.rows[0].error for outcome in outcomes] == [""] * 6
+
+
+def test_a_worker_walks_them_at_once_and_falls_but_once(short, passes, tmp_path):
+    assert executing._walk_job(0, mounted(short, [3]), tmp_path) == [None] * 3
+    assert [len(walked) for walked in passes] == [3]
+    refused = executing._walk_job(0, mounted(short, [5]), tmp_path)
+    assert [str(error) for error in refused] == ["the walker fell"] * 3
+    assert len(passes) == 2
 
 
 def test_two_processes_give_what_one_gives(short, monkeypatch):

@@ -22,14 +22,16 @@ from tests.helpers.commands import one_document
 
 @pytest.fixture
 def walked(monkeypatch, short_walk):
-    """The plans that were walked, by a walker who always makes the short walk."""
+    """The plans that were walked at once, by a walker who always makes the short walk."""
     plans = []
 
-    def walk(plan, policy, on_progress):
-        plans.append(plan)
-        return replace(short_walk, meta=short_walk.meta | {"scenario": plan.name, "seed": plan.seed})
+    def walks(given, policy, on_progress):
+        plans.append([*given])
+        for plan in given:
+            told = {"scenario": plan.name, "seed": plan.seed, "rate_hz": plan.rate_hz}
+            yield replace(short_walk, meta=short_walk.meta | told)
 
-    monkeypatch.setattr(cache, "walk", walk)
+    monkeypatch.setattr(cache, "walks", walks)
     return plans
 
 
@@ -46,6 +48,33 @@ def test_a_plan_is_walked_once(tmp_path, walked, short_plan, short_walk):
     cached_walk(replace(short_plan, seed=6), folder=folder)
     assert len(walked) == 2
     assert not [file for file in folder.iterdir() if file.suffix != ".parquet"]
+
+
+def test_other_truths_of_the_same_steps_are_kept_too(tmp_path, walked, short_plan):
+    heel = replace(short_plan, mount=MOUNTS["heel"])
+    coarse = replace(short_plan, rate_hz=100.0, name="coarse")
+    cached_walk(heel, folder=tmp_path)
+    all_three = [heel, short_plan, coarse]
+    first = cached_walk(short_plan, also=all_three, folder=tmp_path)
+    assert [[plan.name, plan.mount, plan.rate_hz] for plan in walked[1]] == [
+        [plan.name, plan.mount, plan.rate_hz] for plan in (short_plan, coarse)
+    ]
+    assert first.meta["rate_hz"] == 200.0
+    assert all(at(tmp_path, plan).is_file() for plan in all_three)
+    second = cached_walk(coarse, also=all_three, folder=tmp_path)
+    assert (len(walked), second.meta["rate_hz"], second.meta["scenario"]) == (2, 100.0, "coarse")
+
+
+def test_another_truth_that_cannot_be_told_costs_only_itself(tmp_path, monkeypatch, short_plan, short_walk):
+    def walks(*_):
+        yield short_walk
+        raise InputError("short: the walker made 2 footfalls, expected at least 3")
+
+    monkeypatch.setattr(cache, "walks", walks)
+    heel = replace(short_plan, mount=MOUNTS["heel"])
+    assert cached_walk(short_plan, also=[heel], folder=tmp_path).sha == short_walk.sha
+    assert at(tmp_path, short_plan).is_file()
+    assert not at(tmp_path, heel).exists()
 
 
 @pytest.mark.parametrize("part", ["walk", "footfalls"])
@@ -99,7 +128,7 @@ def test_two_at_once_walk_once_and_the_second_is_told_to_wait(tmp_path, monkeypa
         walks.append(1)
         begun.set()
         assert go.wait(20)
-        return short_walk
+        yield short_walk
 
     def get():
         found.append(cached_walk(short_plan, folder=tmp_path, on_wait=wait))
@@ -108,7 +137,7 @@ def test_two_at_once_walk_once_and_the_second_is_told_to_wait(tmp_path, monkeypa
         waits.append(1)
         go.set()  # only now does the first come to its end
 
-    monkeypatch.setattr(cache, "walk", walk)
+    monkeypatch.setattr(cache, "walks", walk)
     first, second = threading.Thread(target=get), threading.Thread(target=get)
     first.start()
     assert begun.wait(20)
@@ -130,7 +159,7 @@ def test_whoever_fell_leaves_no_lock_and_no_file(tmp_path, monkeypatch, short_pl
     def fall(*_):
         raise InputError("short: the walker fell")
 
-    monkeypatch.setattr(cache, "walk", fall)
+    monkeypatch.setattr(cache, "walks", fall)
     for _ in range(2):
         with pytest.raises(InputError, match="fell"):
             cached_walk(short_plan, folder=tmp_path)

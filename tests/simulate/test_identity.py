@@ -135,6 +135,7 @@ def test_the_way_from_walk_to_track_is_told(short_walk, short_plan, recording, t
     assert WalkIdentity.of(walk.meta) == WalkIdentity.of(back.meta) == identity
     assert walk.meta["mount"] == {
         "name": "instep", "foot": "right", "position": [0.075, 0.0, -0.01], "euler_deg": [0.0, 20.0, 0.0],
+        "segment": "foot",
     }  # fmt: skip
     assert (back.meta["unit_seed"], back.meta["noise_seed"], back.meta["without"]) == (7, 9, ["white"])
     params = PdrParams(detector=DETECTORS["shoe"], tilt_gain=0.1)

@@ -49,27 +49,6 @@ def test_it_resumes_where_it_stopped(trained: Path) -> None:
     assert 0 < moved < 0.05  # one update from where it was, not a new beginning
 
 
-def test_a_finished_walker_learns_on(tmp_path: Path, trained: Path) -> None:
-    """With its gains, from its weights, which stay while only their value is learnt."""
-    start = trained / "policy.npz"
-    train(tmp_path, seed=4, samples=2 * BATCH, generations=2, threads=0, start=start)
-    before, after = load_policy(start), load_policy(tmp_path / "policy.npz")
-    np.testing.assert_array_equal(after.feedback_gains, before.feedback_gains)
-    for a, b in zip(after.weights, before.weights, strict=True):
-        np.testing.assert_array_equal(a, b)
-    assert samples(tmp_path) == [2 * BATCH]
-    assert (after.meta["start"], after.meta["start_samples"]) == (before.digest, BATCH)
-
-
-def test_it_learns_on_once_its_value_is_known(tmp_path: Path, trained: Path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    monkeypatch.setattr("footfall.simulate.learn.train._VALUE_FIRST", 0)
-    start = trained / "policy.npz"
-    train(tmp_path, seed=4, samples=2 * BATCH, generations=2, threads=0, start=start)
-    before, after = load_policy(start), load_policy(tmp_path / "policy.npz")
-    moved = max(np.abs(a - b).max() for a, b in zip(after.weights, before.weights, strict=True))
-    assert 0 < moved < 0.05
-
-
 def test_the_same_seed_learns_the_same(tmp_path: Path, trained: Path) -> None:
     train(tmp_path, seed=3, samples=2 * BATCH, generations=2, threads=0)
     np.testing.assert_array_equal(np.load(tmp_path / "gains.npy"), np.load(trained / "gains.npy"))

@@ -16,7 +16,7 @@ from footfall.runs import runs
 from footfall.simulate.episode import STAND_S, Episode, FallError
 from footfall.simulate.plan import Disturbance, Gait, Pace, Plan, Stop
 from footfall.simulate.walk import Walk, footfalls_path, read_walk, write_walk
-from footfall.simulate.walking import walk
+from footfall.simulate.walking import walk, walks
 
 
 def test_it_goes_where_the_route_goes(short_plan: Plan, short_walk: Walk) -> None:
@@ -189,18 +189,72 @@ def test_the_same_plan_gives_the_same_bytes(short_plan: Plan, short_walk: Walk) 
     assert not np.array_equal(other.footfalls.position[5], short_walk.footfalls.position[5])
 
 
-def test_a_mount_turns_the_measurement_and_not_the_walk(short_plan: Plan, short_walk: Walk) -> None:
+@pytest.fixture(scope="module")
+def seen(short_plan: Plan) -> dict[str, Walk]:
+    """One walk from several places and, as "coarse", at another rate."""
+    plans = {name: replace(short_plan, mount=MOUNTS[name]) for name in ("shank", "instep", "medial")}
+    plans["coarse"] = replace(short_plan, rate_hz=100.0)
+    return dict(zip(plans, walks(list(plans.values())), strict=True))
+
+
+def test_several_truths_of_one_walk_have_the_bits_of_each_alone(
+    short_plan: Plan, short_walk: Walk, seen: dict[str, Walk]
+) -> None:
+    assert seen["instep"].sha == short_walk.sha
+    assert seen["instep"].meta == short_walk.meta
+    assert seen["medial"].sha == walk(replace(short_plan, mount=MOUNTS["medial"])).sha
+    assert seen["medial"].meta["mount"]["name"] == "medial"
+    coarse = seen["coarse"]
+    assert (coarse.interval, coarse.meta["rate_hz"]) == (pytest.approx(0.01), 100.0)
+    fine = np.searchsorted(short_walk.footfalls.t, coarse.footfalls.t[5])
+    apart = short_walk.footfalls.position - coarse.footfalls.position[5]
+    assert np.linalg.norm(apart, axis=1).min() < 0.005
+    assert abs(fine - 5) <= 1
+
+
+def test_only_plans_of_the_same_steps_are_walked_at_once(short_plan: Plan) -> None:
+    with pytest.raises(ValueError, match="mount and rate alone"):
+        next(walks([short_plan, replace(short_plan, seed=6)]))
+    with pytest.raises(InputError, match="rate = 300 Hz"):
+        next(walks([short_plan, replace(short_plan, rate_hz=300.0)]))
+
+
+def test_a_mount_turns_the_measurement_and_not_the_walk(short_plan: Plan, seen: dict[str, Walk]) -> None:
     """Two IMUs on one foot: the turning rates differ by their constant relative attitude."""
-    medial = walk(replace(short_plan, mount=MOUNTS["medial"]))
-    n = min(len(medial.t), len(short_walk.t))
+    medial, instep = seen["medial"], seen["instep"]
     still = int(25 * short_plan.rate_hz)
-    relative = Rotation.from_quat(short_walk.quaternion[0], scalar_first=True).inv() * Rotation.from_quat(
-        medial.quaternion[0], scalar_first=True
-    )
+    relative = _attitude(instep, 0).inv() * _attitude(medial, 0)
     assert np.degrees(relative.magnitude()) == pytest.approx(20.0, abs=2.0)
-    peak = np.percentile(np.linalg.norm(medial.gyro[still:n], axis=1), [50, 90, 99])
-    same = np.percentile(np.linalg.norm(short_walk.gyro[still:n], axis=1), [50, 90, 99])
+    peak = np.percentile(np.linalg.norm(medial.gyro[still:], axis=1), [50, 90, 99])
+    same = np.percentile(np.linalg.norm(instep.gyro[still:], axis=1), [50, 90, 99])
     np.testing.assert_allclose(peak, same, rtol=0.03)
+
+
+def test_a_shank_meets_its_foot_at_the_ankle_and_shares_its_stances(seen: dict[str, Walk]) -> None:
+    shank, instep = seen["shank"], seen["instep"]
+    ankles = []
+    for name, one in (("shank", shank), ("instep", instep)):
+        mount = MOUNTS[name]
+        segment = _attitude(one) * Rotation.from_euler("ZYX", mount.euler_deg[::-1], degrees=True).inv()
+        ankles.append(one.position - segment.apply(mount.position))
+    np.testing.assert_allclose(ankles[0], ankles[1], atol=1e-6)
+    for name in ("t", "contact", "stance"):
+        np.testing.assert_array_equal(getattr(shank, name), getattr(instep, name))
+    np.testing.assert_array_equal(shank.footfalls.t, instep.footfalls.t)
+    # It is no place for zero velocity: in mid-stance it turns about the ankle and travels forwards.
+    middle = np.searchsorted(shank.t, shank.footfalls.t[3:-2])
+    speed, rate = (
+        [float(np.median(np.linalg.norm(part[middle], axis=1))) for part in parts]
+        for parts in ((shank.velocity, instep.velocity), (shank.gyro, instep.gyro))
+    )
+    assert speed[0] > 5 * speed[1]
+    assert rate[0] > 2 * rate[1]
+    assert np.median(shank.velocity[middle[:8], 0]) > 0.04
+    assert shank.footfalls.heading[3] == pytest.approx(instep.footfalls.heading[3], abs=0.2)
+
+
+def _attitude(one: Walk, rows: int | slice = slice(None)) -> Rotation:
+    return Rotation.from_quat(one.quaternion[rows], scalar_first=True)
 
 
 def test_it_climbs_what_the_ground_climbs(short_plan: Plan) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,12 +11,16 @@ from footfall.hdr.method import Method
 from footfall.pdr.track import read_track
 from footfall.scenarios import trial as trials
 from footfall.scenarios.evaluate import evaluate
-from footfall.scenarios.studies.plan import plan_of
+from footfall.scenarios.studies.local import spread
+from footfall.scenarios.studies.plan import cost_of, plan_of, walk_seconds
 from footfall.scenarios.studies.study import Study
 from footfall.scenarios.studies.sweep import sweep
 from footfall.scenarios.studies.task import do
 from footfall.simulate.cache import cached_walk
+from footfall.simulate.identity import mount_name, walk_identity
 from footfall.tables import read_table
+from tests.helpers.study import study
+from tests.helpers.synthetic import synthetic_walk
 
 SCORES = ("heading_error_mean_deg", "position_rmse_m", "return_error_pct")
 NAV = """
@@ -218,3 +223,28 @@ def test_a_worker_that_is_killed_costs_nothing_but_time(place, store):
     assert {(row["imu"], row["stage"]) for row in rows} == {("nimu", ""), ("mtig710", "worker")}
     (told,) = {row["error"] for row in rows if row["stage"]}
     assert told == "its worker process was ended: killed, or out of memory"
+
+
+def test_a_study_of_mounts_walks_once(monkeypatch, tmp_path):
+    passes, walk = [], synthetic_walk(strides=12)
+
+    def walks(plans, policy, on_progress):
+        passes.append([mount_name(plan.mount) for plan in plans])
+        on_progress(1.0)
+        for plan in plans:
+            yield replace(walk, meta=walk.meta | walk_identity(plan, policy).as_dict())
+
+    monkeypatch.setattr("footfall.simulate.cache.walks", walks)
+    axes = {"scenario.sensor.mount": ["instep", "heel", "shank"]}
+    made = study(design={"kind": "grid", "axes": axes}, cases={"walks": 2, "units": 2})
+    plan = plan_of(made)
+    assert cost_of(plan, plan.tasks).walks == 6
+    alone = plan_of(study(cases={"walks": 2, "units": 2}))
+    assert walk_seconds(plan.walks.values()) == walk_seconds(alone.walks.values())
+    told = []
+    done = list(
+        spread(plan.tasks, workers=1, walks=tmp_path, tick=lambda metres, _: told.append(dict(metres)))
+    )
+    assert passes == [["instep", "heel", "shank"]] * 2
+    assert [row.error for one in done for row in one.rows] == [""] * 12
+    assert {len(metres) for metres in told if metres} == {3}  # progress of all three at once
