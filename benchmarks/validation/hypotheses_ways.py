@@ -32,12 +32,10 @@ from footfall.hdr.hypotheses.filter import Beliefs, beliefs
 from footfall.hdr.hypotheses.params import DEG, HABITS, HypothesesParams
 from footfall.hdr.hypotheses.smoother import smoothed
 from footfall.hdr.tracks import Reckoning, pdr_track
-from footfall.models.imu import draw_unit, load_spec
 from footfall.pdr.footfalls import Footfalls
 from footfall.pdr.reckoning import dead_reckon
 from footfall.scenarios.judge.score import compare
 from footfall.scenarios.trial import Trial, walk_of
-from footfall.simulate.from_recording import add_errors
 
 Made = Callable[[Footfalls, Beliefs], np.ndarray]  # the heading (n,) that is made of the beliefs
 USUAL = HypothesesParams()
@@ -183,11 +181,7 @@ def on_chain(job: real_chains.Job, ways: Sequence[Way]) -> list[np.ndarray]:
     """The same of one chain of real recordings."""
     walks = real_chains.in_order(job.pieces, job.unit)
     truth = pdr_track(dead_reckon(chain(walks, job.unit, true=True), PATIENT))
-    recording = chain(walks, job.unit)
-    if job.imu is not None:
-        unit = draw_unit(load_spec(job.imu), job.unit)
-        recording = add_errors(recording, unit, seed=job.unit, temperature=real_chains.AIR)
-    feet = Reckoning(recording, pdr=PATIENT).footfalls
+    feet = Reckoning(chain(walks, job.unit), pdr=PATIENT).footfalls
     track = pdr_track(feet)
     true = track.heading - np.radians(real_chains.heading_error_deg(track, truth))
     return [errors(feet, true, ways)]
@@ -222,19 +216,19 @@ class Table:
 TABLES = {
     "ways on loops": Table(LOOPS, LOOP_NAMES),
     "ways on curves": Table(CURVES, ("curving",)),
-    "ways in rooms": Table(ROOMS, ("rooms",), 24),
+    "ways in rooms": Table(ROOMS, ("rooms",), 12),
     "ways with a perfect IMU": Table(PERFECT, (*LOOP_NAMES, "errands", "curving"), 2, "perfect"),
 }
 WANDERING, HARD = "ways with wander", "ways on hard walks"
-CHAINS = {"ways on real feet": "nimu", "ways on real feet as they are": None}
+FEET_BARE = "ways on real feet as they are"
 
 
 def main() -> None:
     """Judge, and tell."""
     parser = options(__doc__)
-    names = [*TABLES, WANDERING, HARD, *CHAINS]
+    names = [*TABLES, WANDERING, HARD, FEET_BARE]
     parser.add_argument("--tables", nargs="+", default=names, choices=names, metavar="NAME")
-    parser.add_argument("--chains", type=int, default=20, help="of real walks, a group (default 20)")
+    parser.add_argument("--chains", type=int, default=5, help="of real walks, a group (default 5)")
     parser.add_argument("--store", type=Path, help="folder of footfalls (default a temporary one)")
     parser.add_argument("--page", type=Path, help="fill the tables of this page")
     args = parser.parse_args()
@@ -249,7 +243,7 @@ def main() -> None:
             elif name == HARD:
                 groups, ways = hard(), WANDER
             else:
-                groups, ways = feet_of(CHAINS[name], args.chains, args.processes), FEET
+                groups, ways = bare_feet(args.chains, args.processes), FEET
             sheets.append(sheet(name, list(ways), groups))
             sheets[-1].show()
     write_json(args.json, {"figures": {each.name: each.rows for each in sheets}})
@@ -296,8 +290,8 @@ def made_up(case: Case) -> np.ndarray:
     return errors(feet, feet.heading - drifted, tuple(WANDER.values()))
 
 
-def feet_of(imu: str | None, chains: int, processes: int) -> dict[str, np.ndarray]:
-    """Errors by group of recordings."""
+def bare_feet(chains: int, processes: int) -> dict[str, np.ndarray]:
+    """Errors by group of recordings, nothing added."""
     pieces = {real.name: piece_of(real) for real in find(BESIDE)}
     if not pieces:
         raise SystemExit(f"{BESIDE}: no recordings here")
@@ -305,7 +299,7 @@ def feet_of(imu: str | None, chains: int, processes: int) -> dict[str, np.ndarra
     for group, names in real_chains.GROUPS.items():
         own = tuple(pieces[each] for each in names if each in pieces)
         units = range(real_chains.FIRST_UNIT, real_chains.FIRST_UNIT + chains)
-        work = [real_chains.Job(group, own, unit, imu) for unit in units]
+        work = [real_chains.Job(group, own, unit, None) for unit in units]
         parts = run_all(partial(on_chain, ways=tuple(FEET.values())), work, processes, group)
         groups[group] = np.array([one for part in parts for one in part])
     return groups
