@@ -44,6 +44,7 @@ measure studies python -m benchmarks.studies.pages --docs docs --out "$out/studi
 measure hypotheses python -m benchmarks.validation.hypotheses --page docs/hypotheses.md
 measure directions python -m benchmarks.papers.ihde_hypotheses --page docs/hypotheses.md
 measure wander python -m benchmarks.validation.hypotheses_wander --seeds 4 --page docs/hypotheses.md
+measure ways python -m benchmarks.validation.hypotheses_ways --page docs/hypotheses.md
 measure figures python -m benchmarks.validation.hypotheses_figures --figures docs/images
 measure tutorial python docs/examples/spare_torque.py --seed 1 --out "$out/residual.npz" --page docs/tutorial_environment.md
 measure render footfall render straight -o docs/images/walker.png

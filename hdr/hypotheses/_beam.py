@@ -11,31 +11,45 @@ import math
 import numpy as np
 
 from footfall.compiled import kernel
+from footfall.hdr.hypotheses._branches import (
+    ALONG,
+    BRANCHES,
+    CONTINUES,
+    ENTRY,
+    HABIT,
+    LABELS,
+    LEFT,
+    MODE,
+    NOWHERE,
+    PARENT,
+    SCALE,
+    SPREAD,
+    WORLD,
+    fork,
+    put,
+)
+from footfall.hdr.hypotheses._interval import SWAYING, drifting, fading, noises, swaying, turning_back
 from footfall.hdr.hypotheses._linear import (
     ALIGNED,
     ANEW,
     BIAS,
+    CELLS,
     CURVATURE,
     CURVE,
     DRIFT,
     FLICKER,
-    FOOT,
-    FOOT_BEFORE,
-    GENTLE,
     LOADED,
     PATH,
     REFERENCE,
     STATES,
     STAYS,
     STRAIGHT,
-    TIGHT,
-    TURN,
     WARM,
     age,
     aligning,
     begin,
     drift,
-    gain,
+    go_on,
     log_normal,
     move,
     nearest,
@@ -43,30 +57,29 @@ from footfall.hdr.hypotheses._linear import (
     seeing,
     seen,
     set_out,
+    sight_of,
     update,
 )
 from footfall.hdr.hypotheses._sight import (
     COURSE,
     DIRECTIONS,
     DISTANCE,
+    INTERVAL,
     LOAD,
     REST,
     REST_RATE,
     WARMTH,
 )
 
-MODE, HABIT, SCALE, WORLD, ENTRY, PARENT, CONTINUES = range(7)  # of a label
-LABELS = 7
-NOWHERE, ALONG = range(2)  # worlds without and with dominant directions
-COUNT, BEGUN, LOST = range(3)  # of the counters: hypotheses, first stride seen, strides of no direction since
-COUNTERS = 3
+# Of the counters: hypotheses, first stride seen, strides of no direction since, side of what is.
+COUNT, BEGUN, LOST, SIDE = range(4)
+COUNTERS = 4
 LAST = 0  # of the lengths: the stride before
 
 # What is told of a footfall.
 MEAN, SD, P_STRAIGHT, P_CURVE, P_TURN, RATE, SECOND, SECOND_WEIGHT, EVIDENCE = range(9)  # as `filter.Belief`
 TOLD_ROW = 9
 APART = 3.0  # standard deviations between modes
-BRANCHES = 4  # of a hypothesis, beside straights: two for each habit
 
 
 @kernel(error_model="numpy")
@@ -98,11 +111,13 @@ def begin_all(x, P, weights, labels, counters, course, c):  # type: ignore[no-un
 
 
 @kernel(error_model="numpy")
-def step(x, P, weights, labels, counters, lengths, x2, P2, row, c, out):  # type: ignore[no-untyped-def]
-    """Take in a footfall: hypotheses branch, are weighed, pruned and joined; x2, P2 for work.
+def step(xs, Ps, weights, labels, counters, lengths, row, c, out):  # type: ignore[no-untyped-def]
+    """Take in a footfall: hypotheses branch, are weighed, pruned and joined.
 
+    xs, Ps : two sides each, of which counters[SIDE] holds the hypotheses and the other takes the next ones
     labels[:, PARENT] afterwards tells which each came from.
     """
+    x, P = xs[counters[SIDE]], Ps[counters[SIDE]]
     good = row[DISTANCE] >= c.shortest_m
     if counters[BEGUN] == 0:
         begin_all(x, P, weights, labels, counters, row[COURSE] if good else 0.0, c)
@@ -114,140 +129,97 @@ def step(x, P, weights, labels, counters, lengths, x2, P2, row, c, out):  # type
         counters[BEGUN] = 1
     count = counters[COUNT]
     length = 0.5 * (row[DISTANCE] + lengths[LAST]) if lengths[LAST] > 0.0 else row[DISTANCE]
-    variance = c.course * c.course
     lost = 1 if counters[LOST] > 0 else 0
-    habits = len(c.wander_m)
-    change = c.habit_change if habits > 1 else 0.0
-    stays, changes = math.log(1.0 - change), math.log(c.habit_change / max(habits - 1, 1))
-    h, k, a, g = np.zeros(STATES), np.zeros(STATES), np.zeros(STATES), np.zeros(STATES)
-    at_rest = np.zeros(STATES)
-    resting(at_rest, row)
+    h, gains, views = np.zeros(STATES), np.empty((count, STATES)), np.empty((count, 2))
     if good:
         seeing(h, row)
-    room = count * (BRANCHES + 3 * habits)
+    pass_time(x, P, weights, labels, count, row, good, h, gains, views, c)
+    room = count * (BRANCHES + 3 * len(c.wander_m))
     chance = np.empty(room)
     branch = np.empty((room, LABELS), dtype=np.int64)
     n = 0
-    lot_gentle, lot_tight = math.log(c.gentle_chance), math.log(1.0 - c.gentle_chance)
-    log_bends, wavy = math.log(c.curve_curve), c.meander * c.meander * length
-    bare = math.log((1.0 - c.along) * (1.0 - c.along_anew))
-    anew = math.log((1.0 - c.along) * c.along_anew)
-    for j in range(count):
-        mode, habit, size = labels[j, MODE], labels[j, HABIT], c.scales[labels[j, SCALE]]
-        drift(x[j], P[j], row, size, c, a, g)
-        weight = weights[j]
-        chances = c.log_transitions[habit, lost]
-        if row[REST] > 0.0:
-            noise = (size * c.random_walk) ** 2 / row[REST]
-            left, s = update(x[j], P[j], at_rest, row[REST_RATE], noise, k)
-            weight += log_normal(left, s)
-        age(x[j], P[j], row, habit, size, c)
-        if not good:
-            n = put(branch, chance, n, labels[j], j, mode, habit, STAYS, weight)
-            continue
-        s = gain(P[j], h, variance, k)
-        left = seen(row)
-        for i in range(STATES):
-            left -= h[i] * x[j, i]
-        # straight
-        to_straight = weight + chances[mode, STRAIGHT]
-        to_straight += log_normal(left, s + wavy)
-        tried = labels[j, WORLD] == ALONG and mode == TURN  # curves end anywhere
-        along = along_one(x[j], P[j], k, left, s, wavy, c) if tried else 0.0
-        for other in range(habits):
-            if other != habit and mode != TURN:
-                continue
-            lot = 0.0 if mode != TURN else (stays if other == habit else changes)
-            lone = lot + bare if tried else lot
-            n = put(branch, chance, n, labels[j], j, STRAIGHT, other, STAYS, to_straight + lone)
-            if tried:
-                n = put(branch, chance, n, labels[j], j, STRAIGHT, other, ALIGNED, to_straight + lot + along)
-                n = put(branch, chance, n, labels[j], j, STRAIGHT, other, ANEW, to_straight + lot + anew)
-        # turn: of wander beside the new line nothing is known
-        wide = turning_spread(P[j], h, k, s, habit, c)
-        off = left + h[FOOT] * x[j, FOOT] + h[FOOT_BEFORE] * x[j, FOOT_BEFORE]
-        value = weight + chances[mode, TURN] + log_normal(off, wide)
-        n = put(branch, chance, n, labels[j], j, TURN, habit, STAYS, value)
-        # curve
-        to_curve = weight + chances[mode, CURVE]
-        if mode == CURVE:
-            wider = s + wavy + 2.0 * length * k[CURVATURE] + length * length * P[j, CURVATURE, CURVATURE]
-            goes_on = math.log(math.exp(chances[CURVE, CURVE]) - c.curve_curve)
-            value = weight + goes_on + log_normal(left - length * x[j, CURVATURE], wider)
-            n = put(branch, chance, n, labels[j], j, CURVE, habit, STAYS, value)
-            to_curve = weight + log_bends
-        value = to_curve + lot_gentle + log_normal(left, s + wavy + (length * c.gentle) ** 2)
-        n = put(branch, chance, n, labels[j], j, CURVE, habit, GENTLE, value)
-        value = to_curve + lot_tight + log_normal(left, s + wavy + (length * c.tight) ** 2)
-        n = put(branch, chance, n, labels[j], j, CURVE, habit, TIGHT, value)
     if good:
+        n = fork(branch, chance, x, P, weights, labels, count, lost, length, h, gains, views, c)
         lengths[LAST] = row[DISTANCE]
+    else:
+        for j in range(count):
+            n = put(branch, chance, n, labels[j], j, labels[j, MODE], labels[j, HABIT], STAYS, weights[j])
     counters[LOST] = 0 if good else counters[LOST] + 1
-    select(x, P, weights, labels, counters, x2, P2, row, c, out, chance[:n], branch[:n], good, length, h)
+    made = chance[:n], branch[:n]
+    select(xs, Ps, weights, labels, counters, row, c, out, made, good, length, h, gains, views)
 
 
 @kernel(error_model="numpy")
-def turning_spread(P, h, k, s, habit, c):  # type: ignore[no-untyped-def]
-    """Variance of the course in a turn, whose line is a new one; s and k = P h are those of the old one."""
-    old = h[FOOT] * h[FOOT] * P[FOOT, FOOT] + h[FOOT_BEFORE] * h[FOOT_BEFORE] * P[FOOT_BEFORE, FOOT_BEFORE]
-    old += 2.0 * h[FOOT] * h[FOOT_BEFORE] * P[FOOT, FOOT_BEFORE]
-    old -= 2.0 * (h[FOOT] * k[FOOT] + h[FOOT_BEFORE] * k[FOOT_BEFORE])
-    new = c.wander_m[habit] ** 2 + c.place_m * c.place_m
-    return s + old + h[FOOT] * h[FOOT] * new + c.turn * c.turn
+def pass_time(x, P, weights, labels, count, row, good, h, gains, views, c):  # type: ignore[no-untyped-def]
+    """Drift, rest and age of every hypothesis; where there is a course (row h), how each sees it.
 
-
-@kernel(error_model="numpy")
-def along_one(x, P, k, left, s, wavy, c):  # type: ignore[no-untyped-def]
-    """Logarithm of how much likelier a new straight lies along a dominant direction than anyhow.
-
-    Of the angle between path and reference once the course is taken in; against evenly spread angles.
+    gains, views : filled with P h, the innovation and its variance
     """
-    spread = s + wavy
-    pull = (k[PATH] + wavy - k[REFERENCE]) / spread
-    angle = x[PATH] - x[REFERENCE] + pull * left
-    loose = P[PATH, PATH] + wavy + P[REFERENCE, REFERENCE] - 2.0 * P[PATH, REFERENCE] - pull * pull * spread
-    off = angle - nearest(angle, c)
-    return math.log(c.along * 2.0 * math.pi / c.directions) + log_normal(off, loose + c.beside * c.beside)
-
-
-@kernel(error_model="numpy")
-def put(branch, chance, n, label, parent, mode, habit, entry, value):  # type: ignore[no-untyped-def]
-    """Note a branch and its weight; returns how many there are."""
-    branch[n, MODE], branch[n, HABIT], branch[n, ENTRY], branch[n, PARENT] = mode, habit, entry, parent
-    branch[n, SCALE], branch[n, WORLD] = label[SCALE], label[WORLD]
-    branch[n, CONTINUES] = 1 if mode == label[MODE] and entry == STAYS else 0
-    chance[n] = value
-    return n + 1
+    a, back, g = np.zeros(STATES), np.zeros(STATES), np.zeros(STATES)
+    k, at_rest = np.zeros(STATES), np.zeros(STATES)
+    sways = np.zeros((len(c.wander_m), SWAYING))
+    drifting(a, row)
+    new = turning_back(back, row)
+    resting(at_rest, row)
+    told, course = row[REST] * row[REST_RATE], seen(row)
+    drifted, biased, flickered = noises(row, c)
+    kept, flat = fading(row[INTERVAL], c), P.reshape((len(P), CELLS))
+    variance, place = c.course * c.course, c.place_m * c.place_m
+    for habit in range(len(c.wander_m)):
+        swaying(sways[habit], habit, row[INTERVAL], c)
+    for j in range(count):
+        y, Q, q = x[j], P[j], flat[j]
+        size = c.scales[labels[j, SCALE]] ** 2
+        drift(y, Q, q, told, size * drifted, a, back, new, g)
+        if row[REST] > 0.0:
+            noise = size * c.random_walk * c.random_walk / row[REST]
+            left, s = update(y, Q, at_rest, row[REST_RATE], noise, k)
+            weights[j] += log_normal(left, s)
+        age(y, Q, q, kept, sways[labels[j, HABIT]], size * biased, size * flickered, place)
+        if good:
+            views[j, SPREAD] = sight_of(q, h, variance, gains[j])
+            left = course
+            for i in range(STATES):
+                left -= h[i] * y[i]
+            views[j, LEFT] = left
 
 
 @kernel(error_model="numpy")
 def select(  # type: ignore[no-untyped-def]
-    x, P, weights, labels, counters, x2, P2, row, c, out, chance, branch, good, length, h
+    xs, Ps, weights, labels, counters, row, c, out, branches, good, length, h, gains, views
 ):
-    """Make the best branches, join those that are alike, and tell what they say."""
-    k, a, g, abreast = np.zeros(STATES), np.zeros(STATES), np.zeros(STATES), np.zeros(STATES)
-    aligning(abreast)
-    best = chance.max()
+    """Make the best branches on the other side, join those that are alike, and tell what they say."""
+    chance, branch = branches
+    side, best = counters[SIDE], chance.max()
+    x, P, x2, P2 = xs[side], Ps[side], xs[1 - side], Ps[1 - side]
     goes_on = branch[:, CONTINUES] == 1
     able = np.flatnonzero((chance >= best - c.sprout) | (goes_on & (chance >= best - c.prune)))
     order = able[np.argsort(-chance[able], kind="mergesort")]
     kept = 0
-    made = np.empty(c.hypotheses)
-    variance = c.course * c.course
+    made, kinds = np.empty(c.hypotheses), np.empty(c.hypotheses, dtype=np.int64)
+    k, a, g, abreast = np.zeros(STATES), np.zeros(STATES), np.zeros(STATES), np.zeros(STATES)
+    aligning(abreast)
+    wavy, bent = c.meander * c.meander * length, c.bending * c.bending * length
     for at in order:
         if kept == c.hypotheses:
             break
-        parent = branch[at, PARENT]
+        parent, mode, entry = branch[at, PARENT], branch[at, MODE], branch[at, ENTRY]
         y, Q = x2[kept], P2[kept]
-        y[:] = x[parent]
-        Q[:] = P[parent]
-        if good:
-            move(y, Q, branch[at, MODE], branch[at, ENTRY], branch[at, HABIT], length, c, a, g)
-            update(y, Q, h, seen(row), variance, k)
-            if branch[at, ENTRY] == ALIGNED:
-                along = nearest(y[PATH] - y[REFERENCE], c)
-                update(y, Q, abreast, along, c.beside * c.beside, k)
-        twin = alike(x2, P2, labels, kept, branch[at], row, c)
+        straight_on = mode == STRAIGHT and entry != ANEW and P[parent, CURVATURE, CURVATURE] == 0.0
+        if good and (straight_on or (mode == CURVE and entry == STAYS)):
+            left, s = views[parent, LEFT], views[parent, SPREAD]
+            go_on(y, Q, x[parent], P[parent], gains[parent], s, left, mode, length, wavy, bent, g)
+        else:
+            y[:] = x[parent]
+            Q[:] = P[parent]
+            if good:
+                move(y, Q, mode, entry, branch[at, HABIT], length, c, a, g)
+                update(y, Q, h, seen(row), c.course * c.course, k)
+        if entry == ALIGNED:
+            update(y, Q, abreast, nearest(y[PATH] - y[REFERENCE], c.directions), c.beside * c.beside, k)
+        kinds[kept] = kind(branch[at], len(c.wander_m), len(c.scales))
+        beside = c.beside if branch[at, WORLD] == ALONG else math.inf
+        twin = alike(x2, P2, kinds, kept, mode == CURVE, beside, row, c.merge)
         if twin >= 0:
             joined = made[twin] + math.log1p(math.exp(chance[at] - made[twin]))
             join(x2[twin], P2[twin], y, Q, math.exp(chance[at] - joined))
@@ -262,10 +234,8 @@ def select(  # type: ignore[no-untyped-def]
     total = best + math.log(total)
     for j in range(kept):
         weights[j] = made[j] - total
-        x[j] = x2[j]
-        P[j] = P2[j]
-    counters[COUNT] = kept
-    tell(x, P, weights, labels, kept, row, out)
+    counters[COUNT], counters[SIDE] = kept, 1 - side
+    tell(x2, P2, weights, labels, kept, row, out)
     out[EVIDENCE] = total
 
 
@@ -283,31 +253,35 @@ def join(x, P, y, Q, share):  # type: ignore[no-untyped-def]
 
 
 @kernel(error_model="numpy")
-def alike(x2, P2, labels, kept, label, row, c):  # type: ignore[no-untyped-def]
-    """Which of those made is the same as the one made last; -1 for none."""
+def kind(label, habits, scales):  # type: ignore[no-untyped-def]
+    """One number for mode, habit, scale and world."""
+    return ((label[MODE] * habits + label[HABIT]) * scales + label[SCALE]) * 2 + label[WORLD]
+
+
+@kernel(error_model="numpy")
+def alike(x2, P2, kinds, kept, curve, beside, row, merge):  # type: ignore[no-untyped-def]
+    """Which of those made is the same as the one made last; -1 for none.
+
+    beside : rad, most between their references
+    """
     y = x2[kept]
     for j in range(kept):
-        if (
-            labels[j, MODE] != label[MODE]
-            or labels[j, HABIT] != label[HABIT]
-            or labels[j, SCALE] != label[SCALE]
-            or labels[j, WORLD] != label[WORLD]
-        ):
+        if kinds[j] != kinds[kept]:
             continue
         z, Q = x2[j], P2[j]
-        if not near(y, z, Q, DRIFT, c.merge) or not near(y, z, Q, PATH, c.merge):
+        if not near(y, z, Q, DRIFT, merge) or not near(y, z, Q, PATH, merge):
             continue
-        if label[MODE] == CURVE and not near(y, z, Q, CURVATURE, c.merge):
+        if curve and not near(y, z, Q, CURVATURE, merge):
             continue
-        if not near(y, z, Q, WARM, c.merge):
+        if not near(y, z, Q, WARM, merge):
             continue
-        if label[WORLD] == ALONG and abs(y[REFERENCE] - z[REFERENCE]) > c.beside:
+        if abs(y[REFERENCE] - z[REFERENCE]) > beside:
             continue
         apart, spread = y[BIAS] - z[BIAS], Q[BIAS, BIAS]
         for d in range(DIRECTIONS):
             apart += (y[LOADED + d] - z[LOADED + d]) * row[LOAD + d]
             spread += Q[LOADED + d, LOADED + d] * row[LOAD + d] ** 2
-        if abs(apart) <= c.merge * math.sqrt(spread):
+        if abs(apart) <= merge * math.sqrt(spread):
             return j
     return -1
 
@@ -350,16 +324,14 @@ def tell(x, P, weights, labels, count, row, out):  # type: ignore[no-untyped-def
 
 @kernel(error_model="numpy")
 def nothing_yet(m):  # type: ignore[no-untyped-def]
-    """Room for m hypotheses: means, covariances, weights, labels, counters, lengths; and room for work."""
+    """Room for m hypotheses: means and covariances on two sides, weights, labels, counters, lengths."""
     return (
-        np.zeros((m, STATES)),
-        np.zeros((m, STATES, STATES)),
+        np.zeros((2, m, STATES)),
+        np.zeros((2, m, STATES, STATES)),
         np.zeros(m),
         np.zeros((m, LABELS), dtype=np.int64),
         np.zeros(COUNTERS, dtype=np.int64),
         np.zeros(1),
-        np.zeros((m, STATES)),
-        np.zeros((m, STATES, STATES)),
     )
 
 
@@ -380,16 +352,17 @@ def beam(rows, c, keep):  # type: ignore[no-untyped-def]
     (m, 3) weight, drift and its variance
     """
     m, n = c.hypotheses, len(rows)
-    x, P, weights, labels, counters, lengths, x2, P2 = nothing_yet(m)
+    xs, Ps, weights, labels, counters, lengths = nothing_yet(m)
     told = np.zeros((n, TOLD_ROW))
     at_start(told[0], c)
     history = np.zeros((n if keep else 0, m, LABELS), dtype=np.int16)
     for i in range(1, n):
-        step(x, P, weights, labels, counters, lengths, x2, P2, rows[i], c, told[i])
+        step(xs, Ps, weights, labels, counters, lengths, rows[i], c, told[i])
         if keep:
             for j in range(counters[COUNT]):
                 for q in range(LABELS):
                     history[i, j, q] = labels[j, q]
+    x, P = xs[counters[SIDE]], Ps[counters[SIDE]]
     last = np.empty((counters[COUNT], 3))
     for j in range(counters[COUNT]):
         last[j, 0], last[j, 1], last[j, 2] = weights[j], x[j, DRIFT], P[j, DRIFT, DRIFT]

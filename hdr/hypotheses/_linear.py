@@ -1,6 +1,9 @@
 """Compiled: one hypothesis's state, how it moves and what a footfall says of it (docs/hypotheses.md).
 
 Every step is a few row and column operations on a symmetric covariance, which is cheaper than its matrix.
+The steps of every footfall, which decide how long the filter takes, see it flat (p is P row by row): the
+compiler then knows where rows lie, and works on several of their numbers at once. They take numbers rather
+than all constants c, whose arrays every call would have to count as used.
 """
 
 from __future__ import annotations
@@ -13,14 +16,11 @@ from footfall.hdr.hypotheses._sight import (
     COURSE,
     DIRECTIONS,
     DISTANCE,
-    INTERVAL,
-    JUMP,
     LOAD,
     MOVING,
     REST,
     REST_RATE,
     REST_WARMTH,
-    TOLD,
     WARMTH,
 )
 
@@ -34,7 +34,8 @@ BIAS, FLICKER = 7, 8  # rad/s (b, o)
 WARM = 9  # rad/s/K (c)
 REFERENCE = 10  # rad, one of the dominant directions (r)
 LOADED = 11  # standard normal, of each direction of loads (z)
-STATES = LOADED + DIRECTIONS
+STATES = 16  # with a last that is always 0: a row fills the processor's vectors
+CELLS = STATES * STATES  # of a covariance
 
 STRAIGHT, CURVE, TURN = range(3)
 # How a mode is entered: two kinds of curves; a straight along a dominant direction, or the first of new ones.
@@ -64,8 +65,8 @@ def begin(x, P, course, mode, habit, scale, told, c):  # type: ignore[no-untyped
     P[BIAS, BIAS] = (scale * c.bias) ** 2
     P[FLICKER, FLICKER] = (scale * c.flicker) ** 2
     P[WARM, WARM] = (scale * c.warmth) ** 2
-    for k in range(LOADED, STATES):
-        P[k, k] = scale * scale
+    for k in range(DIRECTIONS):
+        P[LOADED + k, LOADED + k] = scale * scale
 
 
 @kernel(error_model="numpy")
@@ -74,7 +75,7 @@ def set_out(x, course, told, c):  # type: ignore[no-untyped-def]
     x[PATH] = x[REFERENCE] = course - x[DRIFT]
     if told:
         x[REFERENCE] = c.reference
-        x[PATH] = c.reference + nearest(x[PATH] - c.reference, c)
+        x[PATH] = c.reference + nearest(x[PATH] - c.reference, c.directions)
 
 
 @kernel(error_model="numpy")
@@ -128,89 +129,88 @@ def empty(x, P, i):  # type: ignore[no-untyped-def]
 
 
 @kernel(error_model="numpy")
-def decay(x, P, i, share):  # type: ignore[no-untyped-def]
-    """x_i *= share."""
-    x[i] *= share
-    for k in range(len(x)):
-        P[i, k] *= share
-        P[k, i] = P[i, k]
-    P[i, i] *= share
+def drift(x, P, p, told, noise, a, back, new, g):  # type: ignore[no-untyped-def]
+    """What an interval adds to the heading's drift, and a rest in it, which told its share; g for work.
 
-
-@kernel(error_model="numpy")
-def swaying(time, interval):  # type: ignore[no-untyped-def]
-    """Transition of wander and its rate over an interval: critically damped, of time constant `time`."""
-    r = 1.0 / time
-    e = math.exp(-interval * r)
-    return e * (1.0 + interval * r), e * interval, -e * r * r * interval, e * (1.0 - interval * r)
-
-
-@kernel(error_model="numpy")
-def drifting(a, row):  # type: ignore[no-untyped-def]
-    """Fill the coefficients with which the drift grows by the states."""
-    a[:] = 0.0
-    a[BIAS] = a[FLICKER] = row[ACTIVE]
-    a[WARM] = row[ACTIVE] * row[WARMTH]
-    for k in range(DIRECTIONS):
-        a[LOADED + k] = row[ACTIVE] * row[LOAD + k] + row[JUMP + k]
-
-
-@kernel(error_model="numpy")
-def turning_back(a, row):  # type: ignore[no-untyped-def]
-    """Fill the coefficients by which the path gives back what a new direction adds; whether one is new."""
-    a[:] = 0.0
-    new = False
-    for k in range(DIRECTIONS):
-        if row[JUMP + k] != 0.0:
-            a[LOADED + k] = -row[JUMP + k]
-            new = True
-    return new
-
-
-@kernel(error_model="numpy")
-def drift(x, P, row, scale, c, a, g):  # type: ignore[no-untyped-def]
-    """What an interval adds to the heading's drift, a rest in it what it told; a, g for work."""
-    drifting(a, row)
-    add_to(x, P, DRIFT, a, g)
-    x[DRIFT] += row[REST] * row[REST_RATE]
-    P[DRIFT, DRIFT] += scale * scale * c.random_walk * c.random_walk * row[ACTIVE]
-    if turning_back(a, row):
-        add_to(x, P, PATH, a, g)
-
-
-@kernel(error_model="numpy")
-def age(x, P, row, habit, scale, c):  # type: ignore[no-untyped-def]
-    """What an interval does to the gyro's errors and to the wander, whatever the path is."""
-    interval = row[INTERVAL]
-    kept = math.exp(-interval / c.flicker_s)
-    decay(x, P, FLICKER, kept)
-    P[FLICKER, FLICKER] += (scale * c.flicker) ** 2 * (1.0 - kept * kept)
-    walk = c.bias_walk if row[TOLD] > 0.0 else c.bias_walk_blind
-    P[BIAS, BIAS] += scale * scale * walk * walk * interval
-    become(x, P, FOOT_BEFORE, FOOT)
-    sway(x, P, c.wander_m[habit], c.wander_s[habit], interval)
-    become(x, P, FOOT, ASIDE)
-    P[FOOT, FOOT] += c.place_m * c.place_m
-
-
-@kernel(error_model="numpy")
-def sway(x, P, aside, time, interval):  # type: ignore[no-untyped-def]
-    """Wander over an interval, of stationary variance aside^2 and (aside/time)^2."""
+    noise : its variance; a : of `drifting`; back, new : of `turning_back`
+    """
     n = len(x)
-    f00, f01, f10, f11 = swaying(time, interval)
+    for j in range(n):
+        more = a[BIAS] * p[BIAS * STATES + j] + a[FLICKER] * p[FLICKER * STATES + j]
+        more += a[WARM] * p[WARM * STATES + j]
+        for d in range(DIRECTIONS):
+            more += a[LOADED + d] * p[(LOADED + d) * STATES + j]
+        g[j] = more
+    own = g[DRIFT]
+    for j in range(n):
+        x[DRIFT] += a[j] * x[j]
+        own += a[j] * g[j]
+        p[DRIFT * STATES + j] += g[j]
+    for j in range(n):
+        p[j * STATES + DRIFT] = p[DRIFT * STATES + j]
+    x[DRIFT] += told
+    P[DRIFT, DRIFT] += own + noise
+    if new:
+        add_to(x, P, PATH, back, g)
+
+
+@kernel(error_model="numpy")
+def age(x, P, p, kept, f, bias, flicker, place):  # type: ignore[no-untyped-def]
+    """What an interval does to the gyro's errors and to the wander, whatever the path is.
+
+    kept : of `fading`; f : of `swaying`, for the habit; the others are added variances: of the two rates and
+    of where a foot lands
+    """
+    n = len(x)
+    f00, f01, f10, f11 = f[0], f[1], f[2], f[3]
+    x[FOOT_BEFORE] = x[FOOT]
     x[ASIDE], x[SLIDE] = f00 * x[ASIDE] + f01 * x[SLIDE], f10 * x[ASIDE] + f11 * x[SLIDE]
-    for k in range(n):
-        p, q = P[ASIDE, k], P[SLIDE, k]
-        P[ASIDE, k], P[SLIDE, k] = f00 * p + f01 * q, f10 * p + f11 * q
-    for k in range(n):
-        p, q = P[k, ASIDE], P[k, SLIDE]
-        P[k, ASIDE], P[k, SLIDE] = f00 * p + f01 * q, f10 * p + f11 * q
-    s, v = aside * aside, (aside / time) ** 2
-    P[ASIDE, ASIDE] += s - f00 * f00 * s - f01 * f01 * v
-    P[SLIDE, SLIDE] += v - f10 * f10 * s - f11 * f11 * v
-    cross = -f00 * f10 * s - f01 * f11 * v
-    P[ASIDE, SLIDE] += cross
-    P[SLIDE, ASIDE] += cross
+    x[FOOT] = x[ASIDE]
+    x[FLICKER] *= kept
+    for j in range(n):  # rows
+        aside, slide = p[ASIDE * STATES + j], p[SLIDE * STATES + j]
+        p[FOOT_BEFORE * STATES + j] = p[FOOT * STATES + j]
+        p[ASIDE * STATES + j] = p[FOOT * STATES + j] = f00 * aside + f01 * slide
+        p[SLIDE * STATES + j] = f10 * aside + f11 * slide
+        p[FLICKER * STATES + j] *= kept
+    for i in (ASIDE, SLIDE, FOOT, FOOT_BEFORE, FLICKER):  # columns of these rows
+        aside, slide = P[i, ASIDE], P[i, SLIDE]
+        P[i, FOOT_BEFORE] = P[i, FOOT]
+        P[i, ASIDE] = P[i, FOOT] = f00 * aside + f01 * slide
+        P[i, SLIDE] = f10 * aside + f11 * slide
+        P[i, FLICKER] *= kept
+    P[BIAS, BIAS] += bias
+    P[FLICKER, FLICKER] += flicker
+    P[SLIDE, SLIDE] += f[5]
+    for i in (ASIDE, FOOT):
+        P[i, ASIDE] += f[4]
+        P[i, FOOT] += f[4]
+        P[i, SLIDE] += f[6]
+        P[SLIDE, i] += f[6]
+    P[FOOT, FOOT] += place
+    for j in range(n):  # the same columns of the others
+        at = j * STATES
+        p[at + ASIDE], p[at + SLIDE] = p[ASIDE * STATES + j], p[SLIDE * STATES + j]
+        p[at + FOOT], p[at + FOOT_BEFORE] = p[FOOT * STATES + j], p[FOOT_BEFORE * STATES + j]
+        p[at + FLICKER] = p[FLICKER * STATES + j]
+
+
+@kernel(error_model="numpy")
+def sight_of(p, h, variance, k):  # type: ignore[no-untyped-def]
+    """As `gain` for the row of `seeing`."""
+    n = len(k)
+    for j in range(n):
+        more = h[PATH] * p[PATH * STATES + j] + h[FOOT] * p[FOOT * STATES + j]
+        more += h[FOOT_BEFORE] * p[FOOT_BEFORE * STATES + j] + h[DRIFT] * p[DRIFT * STATES + j]
+        more += h[BIAS] * p[BIAS * STATES + j] + h[FLICKER] * p[FLICKER * STATES + j]
+        more += h[WARM] * p[WARM * STATES + j]
+        for d in range(DIRECTIONS):
+            more += h[LOADED + d] * p[(LOADED + d) * STATES + j]
+        k[j] = more
+    s = variance
+    for j in range(n):
+        s += h[j] * k[j]
+    return s
 
 
 @kernel(error_model="numpy")
@@ -226,7 +226,8 @@ def move(x, P, mode, entry, habit, length, c, a, g):  # type: ignore[no-untyped-
         return
     P[PATH, PATH] += c.meander * c.meander * length
     if entry == ANEW:
-        turns = nearest(x[PATH] - x[REFERENCE], c)  # alike, the nearest to the old reference is taken
+        # Alike, the nearest to the old reference is taken.
+        turns = nearest(x[PATH] - x[REFERENCE], c.directions)
         become(x, P, REFERENCE, PATH)
         x[REFERENCE] -= turns
         P[REFERENCE, REFERENCE] += c.beside * c.beside
@@ -238,6 +239,40 @@ def move(x, P, mode, entry, habit, length, c, a, g):  # type: ignore[no-untyped-
         a[CURVATURE] = length
         add_to(x, P, PATH, a, g)
         P[CURVATURE, CURVATURE] += c.bending * c.bending * length
+
+
+@kernel(error_model="numpy")
+def go_on(y, Q, x, P, k, s, left, mode, length, wavy, bent, g):  # type: ignore[no-untyped-def]
+    """Fill y and Q with x and P after another stride of the same path: `move` and `update` at once.
+
+    k, s, left : of the course, seen from x and P; wavy, bent : variances that path and curvature gain; g for
+    work. CURVATURE is 0 unless the mode is CURVE.
+    """
+    n = len(x)
+    for j in range(n):
+        g[j] = k[j]
+    if mode == CURVE:
+        for j in range(n):
+            g[j] += length * P[CURVATURE, j]
+        g[PATH] += length * g[CURVATURE]
+        s += length * (k[CURVATURE] + g[CURVATURE])
+        left -= length * x[CURVATURE]
+    g[PATH] += wavy
+    s += wavy
+    for i in range(n):
+        share = g[i] / s
+        y[i] = x[i] + share * left
+        for j in range(n):
+            Q[i, j] = P[i, j] - share * g[j]
+    Q[PATH, PATH] += wavy
+    if mode == CURVE:
+        y[PATH] += length * x[CURVATURE]
+        own = Q[PATH, PATH] + length * (2.0 * P[PATH, CURVATURE] + length * P[CURVATURE, CURVATURE])
+        for j in range(n):
+            Q[PATH, j] += length * P[CURVATURE, j]
+            Q[j, PATH] = Q[PATH, j]
+        Q[PATH, PATH] = own
+        Q[CURVATURE, CURVATURE] += bent
 
 
 @kernel(error_model="numpy")
@@ -268,9 +303,9 @@ def aligning(h):  # type: ignore[no-untyped-def]
 
 
 @kernel(error_model="numpy")
-def nearest(angle, c):  # type: ignore[no-untyped-def]
+def nearest(angle, directions):  # type: ignore[no-untyped-def]
     """The multiple of the angle between dominant directions that is nearest."""
-    sector = 2.0 * math.pi / c.directions
+    sector = 2.0 * math.pi / directions
     return sector * math.floor(angle / sector + 0.5)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from footfall.hdr.hypotheses import _beam, _linear, _sight
+from footfall.hdr.hypotheses import _beam, _branches, _linear, _sight
 from footfall.hdr.hypotheses._linear import (
     ALIGNED,
     ANEW,
@@ -35,7 +35,7 @@ from footfall.hdr.hypotheses._linear import (
 )
 from footfall.hdr.hypotheses.params import Constants
 
-LOADS = slice(LOADED, STATES)
+LOADS = slice(LOADED, LOADED + _sight.DIRECTIONS)
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,8 @@ def first(c: Constants, course: float) -> list[Hypothesis]:
     """Hypotheses before the first stride."""
     found = []
     ways = len(c.wander_m) * len(c.scales)
-    for world, mode in product((_beam.NOWHERE, _beam.ALONG), (STRAIGHT, CURVE)):
-        chance = c.along_first if world == _beam.ALONG else 1 - c.along_first
+    for world, mode in product((_branches.NOWHERE, _branches.ALONG), (STRAIGHT, CURVE)):
+        chance = c.along_first if world == _branches.ALONG else 1 - c.along_first
         chance *= c.straight_first if mode == STRAIGHT else 1 - c.straight_first
         for habit, (scale, size) in product(range(len(c.wander_m)), enumerate(c.scales)):
             mean = np.zeros(STATES)
@@ -72,7 +72,7 @@ def first(c: Constants, course: float) -> list[Hypothesis]:
             cov = np.diag(sd**2) + new_line(c, habit)
             cov[REFERENCE, PATH] = cov[PATH, REFERENCE] = cov[PATH, PATH]
             cov[REFERENCE, REFERENCE] = cov[PATH, PATH] + c.beside**2
-            if world == _beam.ALONG and mode == STRAIGHT and not math.isnan(c.reference):
+            if world == _branches.ALONG and mode == STRAIGHT and not math.isnan(c.reference):
                 mean[REFERENCE] = c.reference
                 sector = 2 * math.pi / c.directions
                 mean[PATH] = c.reference + sector * math.floor((course - c.reference) / sector + 0.5)
@@ -271,7 +271,7 @@ class PlainBeam:
             if of.mode == TURN and others:
                 lot = math.log(1 - c.habit_change if habit == of.habit else c.habit_change / others)
             lot += chances[of.mode, STRAIGHT]
-            new = of.world == _beam.ALONG and of.mode == TURN
+            new = of.world == _branches.ALONG and of.mode == TURN
             bare = math.log((1 - c.along) * (1 - c.along_anew)) if new else 0.0
             found.append((STRAIGHT, habit, STAYS, lot + bare))
             if new:
@@ -336,7 +336,7 @@ class PlainBeam:
         apart = np.abs(one.mean - other.mean)
         near = apart <= self.c.merge * np.sqrt(np.maximum(np.diag(other.cov), 0.0))
         judged = [DRIFT, PATH, WARM] + ([CURVATURE] if one.mode == CURVE else [])
-        if one.world == _beam.ALONG and apart[REFERENCE] > self.c.beside:
+        if one.world == _branches.ALONG and apart[REFERENCE] > self.c.beside:
             return False
         a = rates(row)
         a[[FLICKER, WARM]] = 0.0

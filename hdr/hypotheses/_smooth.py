@@ -7,15 +7,15 @@ row of the covariance that belongs to the drift, and the gains.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from footfall.compiled import kernel
+from footfall.hdr.hypotheses._interval import SWAYING, drifting, fading, noises, swaying, turning_back
 from footfall.hdr.hypotheses._linear import (
     ALIGNED,
     ANEW,
     ASIDE,
+    CELLS,
     CURVATURE,
     CURVE,
     DRIFT,
@@ -32,14 +32,11 @@ from footfall.hdr.hypotheses._linear import (
     aligning,
     begin,
     drift,
-    drifting,
     move,
     nearest,
     resting,
     seeing,
     seen,
-    swaying,
-    turning_back,
     update,
 )
 from footfall.hdr.hypotheses._sight import COURSE, DISTANCE, INTERVAL, REST, REST_RATE
@@ -122,7 +119,8 @@ def smooth(rows, c, modes, habits, entries, scale, first_mode, first_habit, told
     gains, lefts, spreads = np.zeros((n, 3, m)), np.zeros((n, 3)), np.ones((n, 3))
     x, P = np.zeros(m), np.zeros((m, m))
     a, g, h, k = np.zeros(m), np.zeros(m), np.zeros(m), np.zeros(m)
-    course, last = 0.0, 0.0
+    back, f, p = np.zeros(m), np.zeros(SWAYING), P.reshape(CELLS)
+    course, last, size = 0.0, 0.0, scale * scale
     for i in range(n - 1, 0, -1):
         if rows[i, DISTANCE] >= c.shortest_m:
             course = rows[i, COURSE]
@@ -130,13 +128,18 @@ def smooth(rows, c, modes, habits, entries, scale, first_mode, first_habit, told
     for i in range(1, n):
         row = rows[i]
         habit = habits[i - 1] if i > 1 else first_habit
-        drift(x, P, row, scale, c, a, g)
+        drifting(a, row)
+        new, told_here = turning_back(back, row), row[REST] * row[REST_RATE]
+        drifted, biased, flickered = noises(row, c)
+        drift(x, P, p, told_here, size * drifted, a, back, new, g)
         if row[REST] > 0.0:
             resting(h, row)
-            noise = (scale * c.random_walk) ** 2 / row[REST]
+            noise = size * c.random_walk * c.random_walk / row[REST]
             lefts[i, 0], spreads[i, 0] = update(x, P, h, row[REST_RATE], noise, k)
             gains[i, 0], taken[i, 0] = k, True
-        age(x, P, row, habit, scale, c)
+        swaying(f, habit, row[INTERVAL], c)
+        kept_share = fading(row[INTERVAL], c)
+        age(x, P, p, kept_share, f, size * biased, size * flickered, c.place_m * c.place_m)
         if row[DISTANCE] >= c.shortest_m:
             length[i] = 0.5 * (row[DISTANCE] + last) if last > 0.0 else row[DISTANCE]
             last = row[DISTANCE]
@@ -146,7 +149,7 @@ def smooth(rows, c, modes, habits, entries, scale, first_mode, first_habit, told
             gains[i, 1], taken[i, 1] = k, True
             if entries[i] == ALIGNED:
                 aligning(h)
-                along = nearest(x[PATH] - x[REFERENCE], c)
+                along = nearest(x[PATH] - x[REFERENCE], c.directions)
                 lefts[i, 2], spreads[i, 2] = update(x, P, h, along, c.beside * c.beside, k)
                 gains[i, 2], taken[i, 2] = k, True
         kept[i], mean[i] = P[DRIFT], x[DRIFT]
@@ -163,7 +166,7 @@ def backwards(  # type: ignore[no-untyped-def]
     n, m = len(rows), STATES
     found, variance = np.zeros(n), np.zeros(n)
     y, L = np.zeros(m), np.zeros((m, m))
-    a, g, h = np.zeros(m), np.zeros(m), np.zeros(m)
+    a, g, h, f = np.zeros(m), np.zeros(m), np.zeros(m), np.zeros(SWAYING)
     for i in range(n - 1, 0, -1):
         row = rows[i]
         found[i], variance[i] = mean[i], kept[i, DRIFT]
@@ -190,10 +193,10 @@ def backwards(  # type: ignore[no-untyped-def]
                 pull_empty(y, L, CURVATURE)
         habit = habits[i - 1] if i > 1 else first_habit
         pull_become(y, L, FOOT, ASIDE)
-        f00, f01, f10, f11 = swaying(c.wander_s[habit], row[INTERVAL])
-        pull_sway(y, L, f00, f01, f10, f11)
+        swaying(f, habit, row[INTERVAL], c)
+        pull_sway(y, L, f[0], f[1], f[2], f[3])
         pull_become(y, L, FOOT_BEFORE, FOOT)
-        kept_share = math.exp(-row[INTERVAL] / c.flicker_s)
+        kept_share = fading(row[INTERVAL], c)
         y[FLICKER] *= kept_share
         for j in range(m):
             L[FLICKER, j] *= kept_share

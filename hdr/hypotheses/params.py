@@ -126,7 +126,26 @@ class HypothesesParams:
             own[name] = np.array(value, dtype=float) if isinstance(value, tuple) else float(value)
         own["hypotheses"] = self.hypotheses
         load = np.repeat([self.g_sensitivity, self.scale, self.g_squared], 9)
-        return Constants(**own, load_sd=load, log_transitions=self._transitions())
+        return Constants(**own, load_sd=load, **self._logarithms())
+
+    def _logarithms(self) -> dict[str, Any]:
+        """Of chances, for branches."""
+        transitions = self._transitions()
+        stays = np.exp(transitions[:, :, 1, 1])  # of a curve
+        others = len(self.wander_m) - 1
+        off = 1 - self.along
+        return {
+            "log_transitions": transitions,
+            "log_goes_on": np.log(stays - self.curve_curve),
+            "log_bends": math.log(self.curve_curve),
+            "log_gentle": math.log(self.gentle_chance),
+            "log_tight": math.log(1 - self.gentle_chance),
+            "log_same_habit": math.log(1 - self.habit_change) if others else 0.0,
+            "log_other_habit": math.log(self.habit_change / max(others, 1)),
+            "log_along": math.log(self.along * 2 * math.pi / self.directions),
+            "log_anyhow": math.log(off * (1 - self.along_anew)),
+            "log_anew": math.log(off * self.along_anew),
+        }
 
     def _transitions(self) -> np.ndarray:
         """Logarithms of chances (habits, 2, 3, 3): mode to mode, second after strides of no direction."""
@@ -149,7 +168,13 @@ class HypothesesParams:
 
 
 class Constants(NamedTuple):
-    """`HypothesesParams` for compiled code; load_sd (27,) of the errors that loads act on."""
+    """`HypothesesParams` for compiled code; load_sd (27,) of the errors that loads act on.
+
+    Logarithms of chances: log_transitions (habits, 2, 3, 3); log_goes_on (habits, 2) that a curve keeps its
+    radius, log_bends that it takes another; log_gentle and log_tight of such; of the same habit after a turn
+    and of another; of a straight then along a dominant direction, over evenly spread angles, along none, and
+    along a new one.
+    """
 
     random_walk: float
     bias: float
@@ -196,6 +221,15 @@ class Constants(NamedTuple):
     merge: float
     load_sd: np.ndarray
     log_transitions: np.ndarray
+    log_goes_on: np.ndarray
+    log_bends: float
+    log_gentle: float
+    log_tight: float
+    log_same_habit: float
+    log_other_habit: float
+    log_along: float
+    log_anyhow: float
+    log_anew: float
 
     def beside_start(self, heading: float) -> Constants:
         """The same for a walk that begins at this heading (rad), from which courses are told."""

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from benchmarks.papers import ihde_hypotheses
-from benchmarks.validation import hypotheses_figures, hypotheses_wander
+from benchmarks.validation import _hard_feet, hypotheses_figures, hypotheses_wander, hypotheses_ways
 from benchmarks.validation.hypotheses_wander import Case, harm, walked
+from footfall.hdr.hypotheses.filter import Beliefs
 
 STEADY = Case("right angles", 0.0, 6.0, 0.0, 3)
 
@@ -75,3 +76,41 @@ def test_figures_are_drawn_of_units(tmp_path):
     hypotheses_figures.modes(one, tmp_path / "modes.png")
     hypotheses_figures.honesty({"a": [one]}, tmp_path / "sd.png")
     assert all((tmp_path / f"{name}.png").stat().st_size > 10_000 for name in ("fans", "modes", "sd"))
+
+
+def test_ways_act_on_the_correction_by_its_size_and_sd():
+    feet, _ = walked(replace(STEADY, path="straight"))
+    n = len(feet.heading)
+    correction, sd = np.linspace(-0.4, 0.4, n), np.full(n, 0.1)
+    columns = dict.fromkeys(Beliefs._fields, np.zeros(n))
+    found = Beliefs(**{**columns, "heading": feet.heading + correction, "heading_sd": sd})
+    made = {
+        "part": hypotheses_ways.in_part(feet, found, 0.8),
+        "sd": hypotheses_ways.by_sd(feet, found),
+        "beyond": hypotheses_ways.beyond_sd(feet, found, 2.0),
+    }
+    left = {name: heading - feet.heading for name, heading in made.items()}
+    assert left["part"] == pytest.approx(0.8 * correction)
+    assert left["sd"][-1] == pytest.approx(0.4 * 0.16 / (0.16 + 0.01))
+    assert left["sd"][0] == pytest.approx(-left["sd"][-1])
+    assert left["beyond"] == pytest.approx(np.where(np.abs(correction) > 0.2, correction, 0.0))
+
+
+def test_a_cell_of_ways_tells_errors_and_who_is_worse_than_uncorrected():
+    none = [[4.0, 8.0, np.nan], [2.0, 2.0, np.nan]]
+    way = [[1.0, 2.0, 1.0], [3.1, 2.9, -2.0]]
+    found = np.stack([none, way], axis=1)
+    assert hypotheses_ways.told(found, 0) == "3.0 / 5.0; 3.8"
+    assert hypotheses_ways.told(found, 1) == "2.0 / 2.5; 2.9; 50 / 0 %; 2.5"
+
+
+@pytest.mark.parametrize("make", [_hard_feet.steady_bias, _hard_feet.cooling_on_a_curve])
+def test_hard_feet_follow_their_path_behind_a_drift_that_is_known(make):
+    feet, drifted = make(3)
+    path = feet.heading - drifted
+    middle = 0.5 * (drifted[1:] + drifted[:-1])
+    course = np.unwrap(np.arctan2(*np.diff(feet.position[:, :2], axis=0).T[::-1])) - middle
+    assert np.abs(np.degrees(course - path[1:])).mean() < 1.5
+    assert np.degrees(drifted[-1]) == pytest.approx(
+        300 * 1.05 * 0.05 if make is _hard_feet.steady_bias else -39.9, rel=0.01
+    )

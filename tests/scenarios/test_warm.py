@@ -118,10 +118,10 @@ class Here:
     def __init__(self, done):
         self.done = done
 
-    def submit(self, job, *given):
+    def submit(self, job, at, trials, *given):
         self.done.append("given away")
         future = Future()
-        future.set_result(InputError("nobody walked") if job is execute._walk_job else [])
+        future.set_result([InputError("nobody walked")] * len(trials) if job is execute._walk_job else [])
         return future
 
 
