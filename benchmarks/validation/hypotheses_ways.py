@@ -214,7 +214,7 @@ class Table:
 
 
 TABLES = {
-    "ways on loops": Table(LOOPS, LOOP_NAMES),
+    "ways on loops": Table(LOOPS, (*LOOP_NAMES, "straight")),
     "ways on curves": Table(CURVES, ("curving",)),
     "ways in rooms": Table(ROOMS, ("rooms",), 12),
     "ways with a perfect IMU": Table(PERFECT, (*LOOP_NAMES, "errands", "curving"), 2, "perfect"),

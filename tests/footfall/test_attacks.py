@@ -122,6 +122,7 @@ def zipped(**members):
         (zipped(), "an archive without files"),
         (np.random.default_rng(3).bytes(100_000), "no table of numbers"),
     ],
+    ids=["gzip of gzip", "zip of zip", "empty zip", "noise"],  # the archives hold the time of day
 )
 def test_what_is_no_recording_is_told_as_what_it_is(tmp_path, content, why):
     (tmp_path / "a.csv").write_bytes(content)
