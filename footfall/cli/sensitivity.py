@@ -60,8 +60,8 @@ def sensitivity(
             table.add_row(*row)
         print_json(known) if as_json else OUT.print(table)
         return
-    needed("SALib.sample.sobol")
     asked = read_study(study, {} if fidelity is None else {"fidelity": fidelity})
+    needed("SALib.sample.sobol")
     folder = out or Path("out") / asked.name
     with working(scheduler, patience, workers) as crew, results_folder(folder):
         with watching("points", "units recorded") as (trials, (points, heard)):
