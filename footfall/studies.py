@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from footfall.scenarios.judge.verdict import Verdict
-    from footfall.scenarios.parameters import documents, parameters
+    from footfall.scenarios.listing import parameters
+    from footfall.scenarios.parameters import documents
     from footfall.scenarios.studies.gate import Judged, gate
     from footfall.scenarios.studies.gate_file import read_gates, stock_gates
     from footfall.scenarios.studies.map import ErrorMap, error_map
@@ -49,7 +50,7 @@ _HOMES = {
     "documents": "parameters",
     "error_map": "studies.map",
     "gate": "studies.gate",
-    "parameters": "parameters",
+    "parameters": "listing",
     "plan_of": "studies.plan",
     "read_gates": "studies.gate_file",
     "sensitivity": "studies.sensitivity",

@@ -41,8 +41,9 @@ def parameters(
     Set one with --set ADDRESS=VALUE in run, walk, record and track.
     """
     from footfall.hdr.methods import METHODS
-    from footfall.scenarios.parameters import STAGES, documents
-    from footfall.scenarios.parameters import parameters as listed
+    from footfall.scenarios.listing import STAGES
+    from footfall.scenarios.listing import parameters as listed
+    from footfall.scenarios.parameters import documents
     from footfall.scenarios.report.tables import new_table
 
     chosen = list(METHODS) if methods is None else methods.split(",")

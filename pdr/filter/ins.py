@@ -137,7 +137,8 @@ class Alignment:
     gyro_bias : (3,) rad/s, measured at rest
     force : (3,) m/s2, measured at rest
     position : m
-    vertical : (3,) direction of the body that is vertical in the mean over a stride; None: that of the rest
+    vertical : (3,) direction of the body that is vertical in the mean over a stride; None: that of the rest,
+        which needs no look ahead
     """
 
     t: float

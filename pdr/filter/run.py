@@ -31,7 +31,7 @@ from footfall.runs import runs
 
 strapdown = late("footfall.pdr._kernels")
 
-STRIDES = 10
+STRIDES = 10  # whose mean is the vertical; the look ahead of a filter that is not causal in them
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def walking_vertical(
     """(3,) mean direction of the vertical in the body over the first `strides`, from dead reckoning.
 
     A bias turns the heading by its part along this direction, and tilts the foot by the rest of it. So zero
-    velocity, which sees tilt, sees the rest only.
+    velocity, which sees tilt, sees the rest only. So many strides are looked at before the filter sets out.
     """
     rest, places = found.rest, found.stances.footfalls
     ends = places[:-1][:strides] + 1  # strides only, not what lies between the resets of a still period

@@ -14,7 +14,8 @@ from footfall.hdr.method import Method
 from footfall.identity import digest_of
 from footfall.models.policy import stock_policy
 from footfall.scenarios.evaluate import cases
-from footfall.scenarios.parameters import Documents, Parameter, parameters
+from footfall.scenarios.listing import Parameter, parameters
+from footfall.scenarios.parameters import Documents
 from footfall.scenarios.scenario import Scenario, build_scenario
 from footfall.scenarios.studies.design import Point, labels, points, require_addresses
 from footfall.scenarios.studies.rows import CASE, Kind, kind_of

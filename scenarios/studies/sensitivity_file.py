@@ -12,7 +12,8 @@ from pydantic import Field, field_validator, model_validator
 
 from footfall.addresses import pattern
 from footfall.errors import InputError
-from footfall.scenarios.parameters import Documents, documents, parameters, with_values
+from footfall.scenarios.listing import parameters
+from footfall.scenarios.parameters import Documents, documents, with_values
 from footfall.scenarios.studies.factors import Factor, FactorTable, factors_of, points_at
 from footfall.scenarios.studies.points import Over, Worn, require_allowed, require_metric
 from footfall.toml import Strict, checked, no_such_file, parse_toml

@@ -11,7 +11,8 @@ from pydantic import Field
 
 from footfall.addresses import pattern
 from footfall.errors import InputError
-from footfall.scenarios.parameters import Documents, documents, parameters, with_values
+from footfall.scenarios.listing import parameters
+from footfall.scenarios.parameters import Documents, documents, with_values
 from footfall.scenarios.studies.factors import Factor, FactorTable, factors_of
 from footfall.scenarios.studies.points import Over, Worn, require_allowed, require_metric
 from footfall.scenarios.studies.sensitivity_file import with_units

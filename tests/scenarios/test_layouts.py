@@ -7,7 +7,8 @@ import pytest
 
 from footfall.errors import InputError
 from footfall.scenarios.layouts import STRIDE_M, DrawnPath, drawn, laid_out
-from footfall.scenarios.parameters import documents, parameters, with_values
+from footfall.scenarios.listing import parameters
+from footfall.scenarios.parameters import documents, with_values
 from footfall.scenarios.path import MIN_RADIUS_M, Arc, Straight
 from footfall.scenarios.scenario import load_scenario
 from footfall.scenarios.trial import Trial, setup

@@ -13,7 +13,8 @@ from footfall.identity import digest_of
 from footfall.models.imu import draw_unit, load_spec
 from footfall.models.imu.override import CONSTANTS, overridden
 from footfall.models.subject import SUBJECTS
-from footfall.scenarios.parameters import STAGES, documents, parameters, parsed, sensor, with_values
+from footfall.scenarios.listing import STAGES, parameters
+from footfall.scenarios.parameters import documents, parsed, sensor, with_values
 from footfall.scenarios.scenario import stock_scenarios
 from tests.helpers.places import DOCS
 
