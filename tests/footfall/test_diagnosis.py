@@ -7,7 +7,8 @@ import pytest
 
 from footfall.errors import InputError
 from footfall.formats import diagnosis
-from footfall.formats.diagnosis import CHANGES, diagnose, told_lag, unlagged
+from footfall.formats.closure import rests_of, strides_of
+from footfall.formats.diagnosis import CHANGES, Fit, diagnose, told_lag, unlagged
 from footfall.formats.options import Reading
 from footfall.hdr.tracking import track
 from footfall.recording import Recording
@@ -147,3 +148,44 @@ def test_few_strides_are_not_judged(foot):
     short = Recording(foot.t[:900], foot.gyro[:900], foot.accel[:900])
     assert diagnose(short) is None
     assert diagnosis.MISCLOSURE[0] < diagnosis.MISCLOSURE[1]
+
+
+LATE = 0.04  # s, with which the recordings of the next tests are spoilt
+
+
+def decided(monkeypatch, foot, lag=(LATE, 0.001), scale=(1.1, 0.001), late=LATE):
+    """What is told where these are the best lag and the best scale, each with the rise that it leaves."""
+    fits = Fit(*lag, 0.01), Fit(*scale, 0.01)
+    monkeypatch.setattr(diagnosis, "_fits", lambda part, strides: fits)
+    return diagnose(heard(foot, late))
+
+
+def rise_of(recording):
+    return Fit.of(0.0, recording, strides_of(recording, rests_of(recording))).rise
+
+
+@pytest.mark.parametrize(("left", "both"), [(0.0017, True), (0.0018, False)])
+def test_a_cause_is_named_alone_where_it_closes_half_as_much_again(foot, monkeypatch, left, both):
+    assert ("samples came at" in decided(monkeypatch, foot, scale=(1.1, left)).cause) == both
+    assert ("later than" in decided(monkeypatch, foot, lag=(LATE, left)).cause) == both
+
+
+@pytest.mark.parametrize(("lag", "told"), [(0.0149, False), (0.0151, True), (-0.0151, True)])
+def test_smaller_lags_are_not_told(foot, monkeypatch, lag, told):
+    assert ("later than" in decided(monkeypatch, foot, lag=(lag, 0.001), scale=(1.1, 0.004)).cause) == told
+
+
+@pytest.mark.parametrize(("scale", "told"), [(1.044, False), (1.046, True), (0.954, True)])
+def test_clocks_that_are_nearly_right_are_not_told(foot, monkeypatch, scale, told):
+    assert ("came at" in decided(monkeypatch, foot, lag=(LATE, 0.004), scale=(scale, 0.001)).cause) == told
+
+
+def lag_with_rise(foot, low, high):
+    lags = np.arange(0.008, 0.12, 0.0002)
+    return next(lag for lag in lags if low < rise_of(heard(foot, lag)) < high)
+
+
+def test_a_large_misfit_is_no_bias(foot, monkeypatch):
+    for low, high, biased in ((0.027, 0.03, True), (0.03, 0.033, False)):
+        found = decided(monkeypatch, foot, lag=(LATE, 0.004), late=lag_with_rise(foot, low, high))
+        assert ("a sensor is biased" in found.cause) == biased
