@@ -1,9 +1,9 @@
 """The reference gait: normative joint curves of level walking, scaled with speed.
 
 Curves of hip flexion, knee, ankle and hip adduction over one stride (0 = heel strike of that leg), rounded
-from normative data (Winter; Perry & Burnfield); the foot's roll and yaw follow the gyros of real shoes. The
-hip is shifted by the pelvic tilt, and the ankle was adjusted so that forward kinematics put the foot flat
-from 10 to 40 % of the stride.
+from normative data (Winter; Perry & Burnfield); the foot's roll and yaw, and how briskly knee and ankle push
+off, follow the gyros of real shoes. The hip is shifted by the pelvic tilt, and the ankle was adjusted so that
+forward kinematics put the foot flat from 10 to 40 % of the stride.
 """
 
 from __future__ import annotations
@@ -24,20 +24,29 @@ _ARM_SWING, _ARM_REST = 0.30, -0.03  # rad at the shoulder; the right arm is bac
 
 # percent of the stride -> degrees
 _HIP = {
-    0: 28, 5: 27, 10: 24.5, 20: 15, 30: 4.5, 40: -5.5, 50: -11.5, 55: -10.5, 60: -4, 65: 4.5, 70: 13.5,
-    75: 20.5, 80: 26, 85: 29.5, 90: 31, 95: 30.5,
+    0: 28.5, 5: 27.5, 10: 25, 20: 15, 30: 4.5, 40: -5.5, 50: -11.5, 55: -10.5, 60: -4, 65: 4.5, 70: 13.5, 75:
+    20.5, 80: 26, 85: 29.5, 90: 31, 95: 30.5,
 }  # fmt: skip
 _KNEE = {
-    0: 3, 5: 9, 10: 14, 15: 16, 20: 15, 25: 12, 30: 9, 35: 6.5, 40: 5.5, 45: 7, 50: 13, 55: 23, 60: 37,
-    65: 52, 70: 61, 73: 63, 77: 61, 80: 56, 85: 38, 90: 16, 95: 3,
+    0: 3, 5: 7, 10: 13.5, 15: 16, 20: 15, 25: 12, 30: 9, 35: 6.5, 40: 5.5, 45: 6.5, 50: 11.5, 55: 21.5, 60:
+    37, 65: 53.5, 70: 61.5, 73: 63, 77: 61, 80: 56, 85: 38, 90: 16, 95: 3,
 }  # fmt: skip
 _ANKLE = {
-    0: 8, 3: 3, 7: -4, 10: -0.5, 15: 4.5, 20: 8, 30: 11, 40: 12.5, 45: 12, 50: 7, 55: -3, 60: -14, 63: -17,
-    66: -15, 70: -9, 75: -1, 80: 4, 85: 5, 90: 6, 95: 8,
+    0: 8, 3: 6.5, 7: 0, 10: -1, 15: 4.5, 20: 8.6, 30: 10, 40: 9.4, 45: 9.4, 50: 7, 55: 0, 60: -13, 63: -18,
+    66: -16.5, 70: -9.5, 75: -1, 80: 4, 85: 5, 90: 6, 95: 8,
 }  # fmt: skip
-# The foot lands on the heel's outer edge, pronates, and supinates in push-off; in early swing toes turn out.
-_SUBTALAR = {0: 5, 3: 4, 8: -1, 15: -2, 30: -2, 45: -1, 52: 0, 58: 4, 65: 7, 70: 7, 80: 3, 90: 2, 95: 4}
-_TOES_OUT = {0: 0, 30: 0, 60: 0, 66: 0.5, 71: 3.5, 76: 5, 84: 3, 93: 0.5}
+# The foot lands on the heel's outer edge, pronates, and supinates in push-off; in swing its toes turn out
+# and, with the landing, back.
+_SUBTALAR = {
+    0: 6, 3: 5, 8: -1, 15: -2, 30: -2, 45: -1, 52: 0, 58: 2.5, 64: 1, 70: -2, 75: -4.5, 80: -7.5, 86: -9, 91:
+    -5, 95: 1.5,
+}  # fmt: skip
+_TOES_OUT = {
+    0: 0.6, 4: -0.3, 10: 0, 35: 0, 58: 0, 62: 0.6, 66: 1.7, 70: 3.4, 75: 5.3, 80: 6.7, 85: 7.6, 90: 7.3, 94:
+    5.3, 97: 2.5,
+}  # fmt: skip
+# Where in the stride a foot may turn further out, or less, and back.
+_ALOFT = (0.62, 0.98)
 _ADDUCTION = {0: -1, 10: 3, 20: 5, 30: 4.5, 40: 3.5, 50: 1, 55: -2, 62: -5, 70: -4, 80: -3, 90: -2}
 
 INDEX = {name: i for i, name in enumerate(SERVOS)}
@@ -84,7 +93,19 @@ def _table() -> np.ndarray:
     return table
 
 
+def _twist() -> np.ndarray:
+    begin, end = _ALOFT
+    part = np.clip((np.arange(N_PHASE) / N_PHASE - begin) / (end - begin), 0, 1)
+    bump = np.sin(np.pi * part) ** 2
+    table = np.zeros((N_PHASE, N_SERVOS))
+    for side, offset in (("r", 0), ("l", N_PHASE // 2)):
+        # Outwards is negative, as for toe-out.
+        table[:, INDEX[f"hip_rotation_{side}"]] = -np.roll(bump, -offset)
+    return table
+
+
 TABLE = _table()  # (N_PHASE, N_SERVOS) rad, at 1.2 m/s
+TWIST = _twist()  # (N_PHASE, N_SERVOS), how a swinging leg's hip turns with its foot
 SWINGS = mask("hip_flexion", "shoulder", "lumbar_yaw")  # swing with the stride's length
 BENDS = mask("knee", "ankle")
 

@@ -43,9 +43,9 @@ class Difficulty:
 
     level: float = 1.0
     speed: tuple[float, float] = (0.65, 1.95)
-    slow: float = 0.12
+    slow: float = 0.18
     turn: float = 1.1
-    grade: float = 0.09
+    grade: float = 0.10
     stop: float = 0.35
     stand: float = 0.2
     halt: float = 0.35

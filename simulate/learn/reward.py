@@ -30,7 +30,7 @@ WEIGHTS = {
     "jerk": -0.036,
     "action": -0.0135,
     "impact": -0.8,
-    "foot_jolt": -0.15,
+    "foot_jolt": -0.2,
     "dawdle": -0.5,
     "restless": -1.0,
     "wide": -0.12,
@@ -46,12 +46,13 @@ _SOLE = np.stack(
 _BODY_WEIGHT = 740.0  # N
 _LOADED = 0.2  # body weights
 _RESTLESS_MOST = 4.0  # rad/s
+_JOLT = (1.5, 1.0, 0.7)  # forward, aside, upward: people's heels are stopped less forward than upward
 
 # Vertical ground force of one foot over its stride, in body weights, at about 1.3 m/s (rounded from normative
 # data: Winter; Perry & Burnfield): two humps round a mid-stance dip.
 _LOAD_PHASE = np.array([0, 2, 5, 8, 12, 15, 20, 25, 30, 35, 40, 45, 48, 52, 56, 60, 62, 97, 100]) / 100
 _LOAD = np.array(
-    [0.1, 0.3, 0.6, 0.85, 1.06, 1.07, 0.97, 0.86, 0.80, 0.80, 0.88, 1.02, 1.06, 0.98, 0.60, 0.15, 0, 0, 0.1]
+    [0.1, 0.3, 0.6, 0.86, 1.10, 1.11, 0.98, 0.85, 0.77, 0.77, 0.87, 1.03, 1.08, 1.00, 0.60, 0.15, 0, 0, 0.1]
 )
 
 
@@ -88,7 +89,7 @@ def reward_terms(
     joints = qpos[:, 7 + body.SERVO_JOINT]
     deviation = ((joints - reference) ** 2 * _POSE_WEIGHT).sum(1)
     along, _ = walkers.velocity()
-    lag, aside = walkers.mean_velocity[:, 0] - walkers.speed, walkers.mean_velocity[:, 1]
+    lag, astray = walkers.mean_velocity[:, 0] - walkers.speed, walkers.mean_velocity[:, 1]
     upright = np.einsum("ni,ni->n", walkers.rotation[:, :, 2], walkers.up)
 
     velocity = trace.sensor[:, :, body.SENSOR_FOOT_VELOCITY].reshape(n, k, 2, 3)
@@ -101,7 +102,7 @@ def reward_terms(
     flat, loaded_heel = window(phase, 0.11, 0.42), window(phase, 0.05, 0.38)
     # Elevation of the soles; it should be that of the reference while a foot swings and lands.
     sole_error = (joints - reference) @ _SOLE - walkers.pitch[:, None]
-    swing, stand = window(phase, 0.63, 0.97), window(phase, 0.04, 0.55)
+    swing, stand = window(phase, 0.63, 0.97), window(phase, 0.02, 0.55)
     still = 1 / (1 + speed2 / 0.12**2 + rate2 / 0.6**2)
     gate = walkers.gate.value
     motionless = 0.4 / (1 + speed2 / 0.05**2 + rate2 / 0.3**2) + 0.6 / (
@@ -118,13 +119,17 @@ def reward_terms(
     angle = trace.qpos[:, :, 7 + body.SERVO_JOINT]
     angle_rate = trace.qvel[:, :, 6 + body.SERVO_JOINT]
     torque = np.clip(_KP * (trace.target - angle) - _KV * angle_rate, _LOW, _HIGH)
-    jolt = np.linalg.norm(np.diff(velocity, axis=1), axis=-1).max((1, 2)) / (walkers.dt / k)
+    jerked = np.diff(velocity, axis=1)
+    forward = walkers.cos[:, None, None] * jerked[..., 0] + walkers.sin[:, None, None] * jerked[..., 1]
+    aside = walkers.cos[:, None, None] * jerked[..., 1] - walkers.sin[:, None, None] * jerked[..., 0]
+    jolts = np.stack([_JOLT[0] * forward, _JOLT[1] * aside, _JOLT[2] * jerked[..., 2]], -1)
+    jolt = np.linalg.norm(jolts, axis=-1).max((1, 2)) / (walkers.dt / k)
     feet = walkers.sensor[:, body.SENSOR_FOOT_POSITION]
     dx, dy = feet[:, 3] - feet[:, 0], feet[:, 4] - feet[:, 1]
     separation = -walkers.sin * dx + walkers.cos * dy - 2 * walkers.variability.value[:, WIDTH]
     return {
         "pose": np.exp(-3 * deviation),
-        "mean_speed": 0.6 * np.exp(-20 * lag**2 - 8 * aside**2) + 0.4 * np.exp(-2 * lag**2 - 2 * aside**2),
+        "mean_speed": 0.6 * np.exp(-20 * lag**2 - 8 * astray**2) + 0.4 * np.exp(-2 * lag**2 - 2 * astray**2),
         "speed": np.exp(-3 * (along - walkers.speed) ** 2),
         "heading": np.exp(-12 * walkers.yaw_error**2),
         "upright": np.exp(-12 * (1 - upright) - 0.2 * (qvel[:, 3:6] ** 2).sum(1)),

@@ -17,22 +17,27 @@ from footfall.simulate.walker.state import (
     OF_TOE_OUT,
     TOE_OUT_LEFT,
     TOE_OUT_RIGHT,
+    TWIST,
     WIDTH,
 )
 
-CADENCE_SD, CADENCE_SLOW_SD, CADENCE_SLOW_RHO = 0.026, 0.013, 0.9
-AMPLITUDE_SD = 0.0165
+CADENCE_SD, CADENCE_SLOW_SD, CADENCE_SLOW_RHO = 0.030, 0.015, 0.9
+AMPLITUDE_SD = 0.024
 WIDTH_SD, WIDTH_RHO = 0.0055, 0.5
-TOE_OUT_SD = math.radians(2.8)
+TOE_OUT_SD = math.radians(2.3)
+TWIST_SD = math.radians(7.0)  # gyros of real shoes: 16 to 29 deg/s (SD) of yaw
+USUAL_SPEED, SLOWEST, SLOW_POWER = 1.3, 0.7, 0.6
 _SLOW_GAIN = CADENCE_SLOW_SD * math.sqrt(1 - CADENCE_SLOW_RHO**2)
 
 
 @register_jitable
 def draw(s, normal):  # type: ignore[no-untyped-def]
-    """New goals of the walker's variability from five standard normal numbers."""
+    """New goals of the walker's variability from six standard normal numbers."""
     mean, goal = s.varied_mean, s.varied_goal
     placement, pace, angle = s.level[OF_PLACEMENT], s.level[OF_CADENCE], s.level[OF_TOE_OUT]
     # 0 while the right foot stands (the left one swings), 1 otherwise
+    slowly = (USUAL_SPEED / np.maximum(s.speed, SLOWEST)) ** SLOW_POWER
+    placement, pace, angle = placement * slowly, pace * slowly, angle
     left = np.floor(s.next_phase * 2) % 2 == 1
     s.slow = CADENCE_SLOW_RHO * s.slow + normal[0] * _SLOW_GAIN * pace
     cadence = clip(s.slow + normal[1] * CADENCE_SD * pace, -0.09, 0.09)
@@ -45,10 +50,11 @@ def draw(s, normal):  # type: ignore[no-untyped-def]
     toe_out = clip(normal[4] * TOE_OUT_SD * angle, -0.15, 0.15)
     goal[TOE_OUT_RIGHT] = choose(left, mean[TOE_OUT_RIGHT] + toe_out, goal[TOE_OUT_RIGHT])
     goal[TOE_OUT_LEFT] = choose(left, goal[TOE_OUT_LEFT], mean[TOE_OUT_LEFT] + toe_out)
+    goal[TWIST] = clip(normal[5] * TWIST_SD * angle, -0.3, 0.3)
 
 
 @kernel(nogil=True)
 def draw_all(state, rows, normal):  # type: ignore[no-untyped-def]
-    """`draw` for the walkers `rows` (m,) from `normal` (m, 5)."""
+    """`draw` for the walkers `rows` (m,) from `normal` (m, 6)."""
     for i in range(len(rows)):
         draw(state[rows[i]], normal[i])

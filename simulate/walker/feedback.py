@@ -63,10 +63,12 @@ class Gains(NamedTuple):
     swing_toe_lift: float
 
 
-# Where the search begins (found by such a search for an earlier, flat sole) and the scale of each gain.
+# Where the search begins (found by such a search for a slightly brisker reference gait) and the scale of each
+# gain.
 GAIN_START = Gains(
-    -0.13, 0.14, 0.25, 0.57, 0.06, 0.05, 0.18, 0.44, -0.09, 0.02, 0.06, 0.08, -0.02, 0.05, -0.53, -0.08, 0.42,
-    -0.14, 0.12, 1.86, -0.70, 0.43, 0.23, 0.70, 0.34, 0.63, 0.03, 0.15, -0.09, -0.08, -0.23, 0.23,
+    -0.299, 0.078, 0.367, 0.395, 0.082, -0.012, -0.159, 0.447, -0.076, -0.21, 0.171, 0.16, -0.023, -0.142,
+    -0.305, -0.021, -0.172, -0.415, 0.103, 1.77, -0.828, 0.551, 0.259, 1.142, 0.36, 0.482, 0.051, 0.188,
+    -0.098, -0.101, -0.069, 0.164,
 )  # fmt: skip
 GAIN_SCALE = Gains(
     0.4, 0.05, 0.08, 0.5, 0.08, 0.08, 0.5, 0.08, 0.05, 0.4, 0.08, 0.08, 0.15, 0.2, 0.2, 0.15, 0.3, 0.3, 0.05,
