@@ -24,20 +24,24 @@ _ARM_SWING, _ARM_REST = 0.30, -0.03  # rad at the shoulder; the right arm is bac
 
 # percent of the stride -> degrees
 _HIP = {
-    0: 28, 5: 27, 10: 24.5, 20: 15, 30: 4.5, 40: -5.5, 50: -11.5, 55: -10.5, 60: -4, 65: 4.5, 70: 13.5,
-    75: 20.5, 80: 26, 85: 29.5, 90: 31, 95: 30.5,
+    0: 28.5, 5: 27.5, 10: 24.5, 20: 15, 30: 4.5, 40: -5.5, 50: -11.5, 55: -10.5, 60: -4, 65: 4.5, 70: 13.5,
+    75: 20.5, 80: 26, 85: 29.5, 90: 31, 95: 31,
 }  # fmt: skip
 _KNEE = {
-    0: 3, 5: 9, 10: 14, 15: 16, 20: 15, 25: 12, 30: 9, 35: 6.5, 40: 5.5, 45: 7, 50: 13, 55: 23, 60: 37,
-    65: 52, 70: 61, 73: 63, 77: 61, 80: 56, 85: 38, 90: 16, 95: 3,
+    0: 3, 5: 9, 10: 14, 15: 16, 20: 15, 25: 12, 30: 9, 35: 6.5, 40: 5.5, 45: 7, 50: 13.6, 55: 24.4, 60: 37,
+    65: 50.5, 70: 60.4, 73: 62.4, 77: 60.4, 80: 55.4, 85: 38, 90: 16, 95: 3,
 }  # fmt: skip
 _ANKLE = {
-    0: 8, 3: 3, 7: -4, 10: -0.5, 15: 4.5, 20: 8, 30: 11, 40: 12.5, 45: 12, 50: 7, 55: -3, 60: -14, 63: -17,
-    66: -15, 70: -9, 75: -1, 80: 4, 85: 5, 90: 6, 95: 8,
+    0: 8.5, 3: 4.8, 7: -2.2, 10: -0.5, 15: 4.5, 20: 8, 30: 10.5, 40: 10.7, 45: 10.2, 50: 5.8, 55: -4.8, 60:
+    -14, 63: -16.4, 66: -14.4, 70: -9, 75: -1, 80: 4, 85: 5, 90: 6, 95: 8.5,
 }  # fmt: skip
 # The foot lands on the heel's outer edge, pronates, and supinates in push-off; in early swing toes turn out.
 _SUBTALAR = {0: 5, 3: 4, 8: -1, 15: -2, 30: -2, 45: -1, 52: 0, 58: 4, 65: 7, 70: 7, 80: 3, 90: 2, 95: 4}
-_TOES_OUT = {0: 0, 30: 0, 60: 0, 66: 0.5, 71: 3.5, 76: 5, 84: 3, 93: 0.5}
+_TOES_OUT = {
+    0: 0.1, 30: 0, 60: 0, 66: 0.3, 71: 1.2, 76: 1.8, 84: 1.4, 93: 0.7,
+}  # fmt: skip
+# Where in the stride a foot may turn further out, or less, and back.
+_ALOFT = (0.61, 0.915)
 _ADDUCTION = {0: -1, 10: 3, 20: 5, 30: 4.5, 40: 3.5, 50: 1, 55: -2, 62: -5, 70: -4, 80: -3, 90: -2}
 
 INDEX = {name: i for i, name in enumerate(SERVOS)}
@@ -84,7 +88,20 @@ def _table() -> np.ndarray:
     return table
 
 
+def _twist() -> np.ndarray:
+    begin, end = _ALOFT
+    phase = (np.arange(N_PHASE) / N_PHASE - begin) % 1
+    part = np.minimum(phase / (end - begin), 1)
+    bump = np.sin(np.pi * part) ** 2
+    table = np.zeros((N_PHASE, N_SERVOS))
+    for side, offset in (("r", 0), ("l", N_PHASE // 2)):
+        # Outwards is negative, as for toe-out.
+        table[:, INDEX[f"hip_rotation_{side}"]] = -np.roll(bump, -offset)
+    return table
+
+
 TABLE = _table()  # (N_PHASE, N_SERVOS) rad, at 1.2 m/s
+TWIST = _twist()  # (N_PHASE, N_SERVOS), how a swinging leg's hip turns with its foot
 SWINGS = mask("hip_flexion", "shoulder", "lumbar_yaw")  # swing with the stride's length
 BENDS = mask("knee", "ankle")
 

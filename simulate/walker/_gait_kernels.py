@@ -17,9 +17,11 @@ from footfall.simulate.walker._start_kernels import as_placed, hold_feet
 from footfall.simulate.walker.state import (
     ACTION_SCALE,
     AMPLITUDE,
+    BEND,
     CADENCE,
     TOE_OUT_LEFT,
     TOE_OUT_RIGHT,
+    TWIST,
     WIDTH,
 )
 
@@ -33,6 +35,7 @@ FROZEN, FROZEN_AFTER_A_STOP = 0.12, 0.06
 # The reference gait: a table (phases, 17) rad, and per servo (17,) what scales, shifts and leans it.
 _PARTS = {
     "table": gait.TABLE,
+    "twist": gait.TWIST,
     "swings": gait.SWINGS,
     "bends": gait.BENDS,
     "adduction": gait.mask("hip_adduction"),
@@ -66,8 +69,9 @@ def stride(s):  # type: ignore[no-untyped-def]
 def slew(s):  # type: ignore[no-untyped-def]
     """Move the variability towards its goals; a walker about to stop widens its steps."""
     braking = (s.speed_goal < 0.2) & (s.speed < 0.6) & np.logical_not(s.closing)
-    widen = choose(braking, _WIDER, 0.0)
-    for i in range(5):
+    # Narrow steps are no habit to stop with: the feet would never be far enough apart to stand.
+    widen = choose(braking, _WIDER - np.minimum(s.varied_mean[WIDTH], 0.0), 0.0)
+    for i in range(len(s.varied)):
         goal = s.varied_goal[i] + (widen if i == WIDTH else 0.0)
         s.varied[i] += (goal - s.varied[i]) * (s.dt / _SLEW_S)
 
@@ -75,7 +79,8 @@ def slew(s):  # type: ignore[no-untyped-def]
 @register_jitable
 def amplitudes(s):  # type: ignore[no-untyped-def]
     """Excursions of the hips and of the knees, relative to those of the table."""
-    return gait.hip_amplitude(s.speed) * (1 + s.varied[AMPLITUDE]), gait.knee_amplitude(s.speed)
+    hip = gait.hip_amplitude(s.speed) * (1 + s.varied[AMPLITUDE])
+    return hip, gait.knee_amplitude(s.speed) * (1 + s.varied[BEND])
 
 
 @register_jitable
@@ -110,7 +115,7 @@ def targets(s, ref, rows, out):  # type: ignore[no-untyped-def]
         for i in range(count):
             part = (i + 1) / count
             gate = s.gate_before + (s.gate - s.gate_before) * part
-            walking = ref.table[rows[i], j] * factor + offset
+            walking = ref.table[rows[i], j] * factor + offset + ref.twist[rows[i], j] * s.varied[TWIST]
             residual = (1 - part) * s.residual[j] + part * s.next_residual[j]
             out[i, j] = gate * walking + (1 - gate) * standing + slope + ref.scale[j] * residual
     hold_feet(s, ref, out)
@@ -123,7 +128,8 @@ def reference(s, ref, stagger, out):  # type: ignore[no-untyped-def]
     hip, knee = amplitudes(s)
     for j in range(len(ref.scale)):
         factor, offset, standing, slope = servo(s, ref, j, hip, knee, stagger)
-        out[j] = s.gate * (ref.table[row, j] * factor + offset) + (1 - s.gate) * standing + slope
+        walking = ref.table[row, j] * factor + offset + ref.twist[row, j] * s.varied[TWIST]
+        out[j] = s.gate * walking + (1 - s.gate) * standing + slope
 
 
 # What a kernel fills is passed to it: an array that it returned would cost more than the kernel.

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from footfall.models.subject import Habits
-from footfall.simulate.walker._variability_kernels import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD
-from footfall.simulate.walker.state import WALKER
+from footfall.simulate.walker._variability_kernels import CADENCE_SD, CADENCE_SLOW_SD, TOE_OUT_SD, TWIST_SD
+from footfall.simulate.walker.state import N_VARIED, WALKER
 from footfall.simulate.walker.variability import Variability
 
 
@@ -15,6 +15,7 @@ def test_variability_has_the_stated_spread() -> None:
     everyone, rng = np.ones(n, dtype=bool), np.random.default_rng(1)
     habits = Habits(cadence=1.03, step_width=0.01, toe_out=0.1, asymmetry=0.0)
     state = np.zeros((2, n), WALKER)
+    state["speed"] = state["speed_goal"] = 1.3  # the usual speed
     lively, still = Variability(state[0]), Variability(state[1])
     lively.place(everyone, np.ones(n), [habits] * n)
     still.place(everyone, np.zeros(n), [habits] * n)
@@ -25,7 +26,9 @@ def test_variability_has_the_stated_spread() -> None:
     assert lively.target[:, 0].std() == pytest.approx(np.hypot(CADENCE_SD, CADENCE_SLOW_SD), rel=0.05)
     assert lively.target[:, 0].mean() == pytest.approx(0.03, abs=0.003)
     assert lively.target[:, 3].std() == pytest.approx(TOE_OUT_SD, rel=0.05)
-    np.testing.assert_allclose(still.target, np.tile([0.03, 0, 0.01, 0.1, 0.1], (n, 1)), atol=1e-12)
+    assert lively.target[:, 5].std() == pytest.approx(TWIST_SD, rel=0.05)
+    assert lively.target[:, 5].mean() == pytest.approx(0, abs=0.005)
+    np.testing.assert_allclose(still.target, np.tile([0.03, 0, 0.01, 0.1, 0.1, 0, 0], (n, 1)), atol=1e-12)
 
 
 def test_asymmetry_makes_one_step_quicker_than_the_other() -> None:
@@ -40,7 +43,7 @@ def test_asymmetry_makes_one_step_quicker_than_the_other() -> None:
     assert cadence == pytest.approx([0.02, -0.02])
 
 
-@pytest.mark.parametrize(("part", "moved"), [(0, [1, 2]), (1, [0]), (2, [3, 4])])
+@pytest.mark.parametrize(("part", "moved"), [(0, [1, 2, 6]), (1, [0]), (2, [3, 4, 5])])
 def test_a_part_of_variability_leaves_the_draws_of_the_others_as_they_are(
     part: int, moved: list[int]
 ) -> None:
@@ -56,7 +59,7 @@ def test_a_part_of_variability_leaves_the_draws_of_the_others_as_they_are(
             state["next_phase"] = half
             people.draw(np.arange(n), rng)
         found.append(people.target - people.mean)
-    others = [i for i in range(5) if i not in moved]
+    others = [i for i in range(N_VARIED) if i not in moved]
     np.testing.assert_array_equal(found[0][:, others], found[1][:, others])
     np.testing.assert_allclose(found[1][:, moved], found[0][:, moved] / 2, rtol=0, atol=1e-12)
     assert found[0][:, moved].any(axis=0).all()
