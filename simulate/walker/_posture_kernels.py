@@ -20,6 +20,8 @@ LIMIT = 6.0  # of an observation
 _DOWN, _TOPPLED, _LOST_HEADING = 0.75, 0.75, 1.1  # m, cosine, rad: a body beyond these has fallen
 _MEAN_VELOCITY_S = 0.5
 _AGAINST_DRIFT = 2.0
+# m/s at most, of a walker that wishes to stand and drifts forwards; on steeper slopes it would fall backwards
+_BACK, _GENTLE = 0.04, 0.03
 _TOUCH_SCALE = 400.0  # N
 _N_JOINTS, _N_SERVOS = body.N_JOINTS, body.N_SERVOS
 _N_QPOS, _N_QVEL = 7 + _N_JOINTS, 6 + _N_JOINTS
@@ -75,9 +77,12 @@ def along_heading(s):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def wanted(s):  # type: ignore[no-untyped-def]
-    """Speed to reach (m/s): as commanded, but a walker that is to stand and drifts backwards creeps on."""
-    creep = clip(-_AGAINST_DRIFT * s.mean_velocity[0], 0.0, CREEP)
-    return choose(s.closing, s.speed_goal, np.maximum(s.speed_goal, creep))
+    """Speed to reach (m/s): as commanded, but a walker that is to stand and drifts steps against it."""
+    against = -_AGAINST_DRIFT * s.mean_velocity[0]
+    onwards, back = clip(against, 0.0, CREEP), clip(against, -_BACK, 0.0)
+    gentle = s.grade_forward * s.grade_forward + s.grade_left * s.grade_left < _GENTLE * _GENTLE
+    stays = np.logical_not(s.closing) & (s.speed_goal <= 0) & gentle
+    return choose(s.closing, s.speed_goal, np.maximum(s.speed_goal, onwards)) + choose(stays, back, 0.0)
 
 
 @register_jitable

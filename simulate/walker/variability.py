@@ -11,6 +11,7 @@ import numpy as np
 
 from footfall.models.subject import Habits
 from footfall.simulate.walker._variability_kernels import draw_all
+from footfall.simulate.walker.state import N_VARIED
 from footfall.simulate.walker.state import WIDTH as WIDTH
 
 
@@ -38,10 +39,11 @@ class Variability:
         self.slow[mask] = 0
         self.asymmetry[mask] = [habit.asymmetry for habit in habits]
         self.mean[mask] = [
-            (habit.cadence - 1, 0.0, habit.step_width, habit.toe_out, habit.toe_out) for habit in habits
+            (habit.cadence - 1, 0.0, habit.step_width, habit.toe_out, habit.toe_out, 0.0, 0.0)
+            for habit in habits
         ]
         self.value[mask] = self.target[mask] = self.mean[mask]
 
     def draw(self, rows: np.ndarray, rng: np.random.Generator) -> None:
         """New targets for the walkers `rows` (m,), which begin a step."""
-        draw_all(self._state, rows, rng.standard_normal((len(rows), 5)))
+        draw_all(self._state, rows, rng.standard_normal((len(rows), N_VARIED)))
