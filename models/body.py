@@ -54,7 +54,7 @@ class Servo:
 _LEG_SERVOS = {
     "hip_flexion": Servo(500, 40, -200, 200),
     "hip_adduction": Servo(500, 40, -150, 150),
-    "hip_rotation": Servo(250, 18, -80, 80),
+    "hip_rotation": Servo(250, 16.0, -80, 80),
     "knee": Servo(400, 25, -180, 200),
     "ankle": Servo(300, 12, -160, 60),
     "subtalar": Servo(150, 6, -50, 50),
@@ -204,7 +204,7 @@ def _contact(build: Build) -> dict[str, Any]:
         "condim": 4,
         "friction": [build.friction, 0.06, 0.0001],
         "solref": [build.sole_time, 1.0],
-        "solimp": [0.9, 0.98, 0.005, 0.5, 2.0],
+        "solimp": [0.92, 0.982, 0.005, 0.5, 2.0],
     }
 
 

@@ -24,21 +24,33 @@ _ARM_SWING, _ARM_REST = 0.30, -0.03  # rad at the shoulder; the right arm is bac
 
 # percent of the stride -> degrees
 _HIP = {
-    0: 28, 5: 27, 10: 24.5, 20: 15, 30: 4.5, 40: -5.5, 50: -11.5, 55: -10.5, 60: -4, 65: 4.5, 70: 13.5,
-    75: 20.5, 80: 26, 85: 29.5, 90: 31, 95: 30.5,
+    0: 28.5, 5: 27.5, 10: 24.5, 20: 15, 30: 4.5, 40: -5.5, 50: -11.5, 55: -10.5, 60: -4, 65: 4.5, 70: 13.5,
+    75: 20.5, 80: 26, 85: 29.5, 90: 31, 95: 31,
 }  # fmt: skip
 _KNEE = {
-    0: 3, 5: 9, 10: 14, 15: 16, 20: 15, 25: 12, 30: 9, 35: 6.5, 40: 5.5, 45: 7, 50: 13, 55: 23, 60: 37,
-    65: 52, 70: 61, 73: 63, 77: 61, 80: 56, 85: 38, 90: 16, 95: 3,
+    0: 3, 5: 9, 10: 14, 15: 16, 20: 15, 25: 12, 30: 9, 35: 6.5, 40: 5.5, 45: 7, 50: 13.1, 55: 23.3, 60: 37,
+    65: 51.2, 70: 60.4, 73: 62.4, 77: 60.4, 80: 55.4, 85: 38, 90: 16, 95: 3,
 }  # fmt: skip
 _ANKLE = {
-    0: 8, 3: 3, 7: -4, 10: -0.5, 15: 4.5, 20: 8, 30: 11, 40: 12.5, 45: 12, 50: 7, 55: -3, 60: -14, 63: -17,
-    66: -15, 70: -9, 75: -1, 80: 4, 85: 5, 90: 6, 95: 8,
+    0: 8.5, 3: 5.3, 7: -1.7, 10: -0.5, 15: 4.5, 20: 8, 30: 10.9, 40: 12.2, 45: 11.7, 50: 6.7, 55: -3.4,
+    60: -14, 63: -16.9, 66: -14.9, 70: -9, 75: -1, 80: 4, 85: 5, 90: 6, 95: 8.5,
 }  # fmt: skip
 # The foot lands on the heel's outer edge, pronates, and supinates in push-off; in early swing toes turn out.
-_SUBTALAR = {0: 5, 3: 4, 8: -1, 15: -2, 30: -2, 45: -1, 52: 0, 58: 4, 65: 7, 70: 7, 80: 3, 90: 2, 95: 4}
-_TOES_OUT = {0: 0, 30: 0, 60: 0, 66: 0.5, 71: 3.5, 76: 5, 84: 3, 93: 0.5}
+_SUBTALAR = {0: 5, 3: 4, 8: -1, 15: -1.7, 30: -2, 45: -0.7, 52: 0, 58: 4, 65: 7, 70: 7, 80: 3, 90: 2, 95: 4}
+_TOES_OUT = {
+    0: 0.1, 4: -0.1, 10: -0.1, 35: 0.1, 58: 0.1, 62: 0, 66: 0.5, 70: 2.1, 75: 3.5, 80: 3.4, 85: 2.4, 90: 1.4,
+    94: 0.8, 97: 0.3,
+}  # fmt: skip
+# Where in the stride a foot may turn further out, or less, and back: how far is drawn for each step.
+_ALOFT = (0.61, 0.905)
 _ADDUCTION = {0: -1, 10: 3, 20: 5, 30: 4.5, 40: 3.5, 50: 1, 55: -2, 62: -5, 70: -4, 80: -3, 90: -2}
+# In steady walking the pelvis sinks further over the standing leg, or the loaded foot creeps outwards. That
+# alone would narrow the steps by a centimetre, so both legs are set a little wider.
+_SINKS = {
+    0: -0.25, 10: -0.25, 20: 1.5, 30: 1.5, 40: 1.5, 50: -0.25, 60: -0.25, 70: -0.25, 80: -0.25, 90: -0.25,
+}  # fmt: skip
+_SLOW, _STEADY = 0.4, 1.0  # m/s
+_SLIGHT, _SHARP = 0.1, 0.5  # rad/s: in sharp turns it would turn too little
 
 INDEX = {name: i for i, name in enumerate(SERVOS)}
 
@@ -74,9 +86,8 @@ def _table() -> np.ndarray:
         "hip_rotation": -_curve(_TOES_OUT),
     }
     table = np.zeros((N_PHASE, N_SERVOS))
-    for side, offset in (("r", 0), ("l", N_PHASE // 2)):
-        for joint, curve in curves.items():
-            table[:, INDEX[f"{joint}_{side}"]] = np.roll(curve, -offset)
+    for joint, curve in curves.items():
+        table += _on_both_legs(joint, curve)
     swing = np.cos(2 * np.pi * phase / N_PHASE)
     table[:, INDEX["lumbar_yaw"]] = -_TRUNK_COUNTER_ROTATION * swing
     table[:, INDEX["shoulder_r"]] = _ARM_REST - _ARM_SWING * swing
@@ -84,7 +95,24 @@ def _table() -> np.ndarray:
     return table
 
 
+def _on_both_legs(joint: str, curve: np.ndarray) -> np.ndarray:
+    table = np.zeros((N_PHASE, N_SERVOS))
+    for side, offset in (("r", 0), ("l", N_PHASE // 2)):
+        table[:, INDEX[f"{joint}_{side}"]] = np.roll(curve, -offset)
+    return table
+
+
+def _turning_out() -> np.ndarray:
+    """From 0 to 1 and back to 0 within the swing (N_PHASE,)."""
+    begin, end = _ALOFT
+    phase = (np.arange(N_PHASE) / N_PHASE - begin) % 1
+    bump: np.ndarray = np.sin(np.pi * np.minimum(phase / (end - begin), 1)) ** 2
+    return bump
+
+
 TABLE = _table()  # (N_PHASE, N_SERVOS) rad, at 1.2 m/s
+SINKING = _on_both_legs("hip_adduction", _curve(_SINKS))  # (N_PHASE, N_SERVOS) rad, in steady walking
+TWIST = _on_both_legs("hip_rotation", -_turning_out())  # per rad of the swinging foot; outwards is negative
 SWINGS = mask("hip_flexion", "shoulder", "lumbar_yaw")  # swing with the stride's length
 BENDS = mask("knee", "ankle")
 
@@ -121,6 +149,13 @@ def knee_amplitude(speed: np.ndarray) -> np.ndarray:
     return np.minimum(np.maximum(0.4 + 0.6 * speed / 0.9, 0.4), 1.0)
 
 
+@register_jitable
+def steadiness(speed: np.ndarray, turn: np.ndarray | float = 0.0) -> np.ndarray:
+    """0 in the slow steps before a stop and in sharp turns (rad/s), 1 from an easy walk straight on."""
+    easy = np.minimum(np.maximum((speed - _SLOW) / (_STEADY - _SLOW), 0.0), 1.0)
+    return easy * np.minimum(np.maximum((_SHARP - np.abs(turn)) / (_SHARP - _SLIGHT), 0.0), 1.0)
+
+
 def reference_angles(phase: np.ndarray, speed: np.ndarray, amplitude: np.ndarray | float = 1.0) -> np.ndarray:
     """Servo angles of the reference gait.
 
@@ -137,4 +172,5 @@ def reference_angles(phase: np.ndarray, speed: np.ndarray, amplitude: np.ndarray
     angles = TABLE[(phase * N_PHASE).astype(np.intp) % N_PHASE]
     hip = hip_amplitude(speed) * amplitude
     knee = knee_amplitude(speed)
-    return angles * (1 + SWINGS * (hip[..., None] - 1) + BENDS * (knee[..., None] - 1))
+    sinking = SINKING[(phase * N_PHASE).astype(np.intp) % N_PHASE] * steadiness(speed)[..., None]
+    return sinking + angles * (1 + SWINGS * (hip[..., None] - 1) + BENDS * (knee[..., None] - 1))

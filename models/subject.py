@@ -38,7 +38,7 @@ class Build:
     trunk_mass: float = 1.0
     leg_mass: float = 1.0
     friction: float = 1.0
-    sole_time: float = 0.016
+    sole_time: float = 0.015
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class Subject:
     toe_out_deg: float = 3.0
     asymmetry: float = 0.0
     friction: float = 1.0
-    sole_time_s: float = 0.016
+    sole_time_s: float = 0.015
 
     def __post_init__(self) -> None:
         for key, (low, high) in _LIMITS.items():
@@ -136,14 +136,20 @@ class Subject:
 
 
 # Soles by their softness: the contact's time constant (s). Lengths of the shoe do not differ.
-SHOES = {"stiff": 0.013, "walking": 0.016, "running": 0.026}
+SHOES = {"stiff": 0.013, "walking": 0.015, "running": 0.026}
 
 # The paper's walks "were performed by two different subjects" (Borenstein et al. 2008, section 5).
 SUBJECTS = {
     "reference": Subject(),
     "taller": Subject("taller", height_m=1.86, mass_kg=84.0, cadence=0.98, toe_out_deg=6.0, asymmetry=0.01),
     "shorter": Subject(
-        "shorter", height_m=1.64, mass_kg=62.0, cadence=1.02, toe_out_deg=2.0, asymmetry=-0.01
+        "shorter",
+        height_m=1.64,
+        mass_kg=62.0,
+        cadence=1.01,
+        step_width_m=0.001,
+        toe_out_deg=2.0,
+        asymmetry=-0.01,
     ),
 }
 

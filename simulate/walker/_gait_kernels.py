@@ -17,9 +17,11 @@ from footfall.simulate.walker._start_kernels import as_placed, hold_feet
 from footfall.simulate.walker.state import (
     ACTION_SCALE,
     AMPLITUDE,
+    BEND,
     CADENCE,
     TOE_OUT_LEFT,
     TOE_OUT_RIGHT,
+    TWIST,
     WIDTH,
 )
 
@@ -33,6 +35,8 @@ FROZEN, FROZEN_AFTER_A_STOP = 0.12, 0.06
 # The reference gait: a table (phases, 17) rad, and per servo (17,) what scales, shifts and leans it.
 _PARTS = {
     "table": gait.TABLE,
+    "twist": gait.TWIST,
+    "sinking": gait.SINKING,
     "swings": gait.SWINGS,
     "bends": gait.BENDS,
     "adduction": gait.mask("hip_adduction"),
@@ -66,8 +70,9 @@ def stride(s):  # type: ignore[no-untyped-def]
 def slew(s):  # type: ignore[no-untyped-def]
     """Move the variability towards its goals; a walker about to stop widens its steps."""
     braking = (s.speed_goal < 0.2) & (s.speed < 0.6) & np.logical_not(s.closing)
-    widen = choose(braking, _WIDER, 0.0)
-    for i in range(5):
+    # Narrow steps are no habit to stop with: the feet would never be far enough apart to stand.
+    widen = choose(braking, _WIDER - np.minimum(s.varied_mean[WIDTH], 0.0), 0.0)
+    for i in range(len(s.varied)):
         goal = s.varied_goal[i] + (widen if i == WIDTH else 0.0)
         s.varied[i] += (goal - s.varied[i]) * (s.dt / _SLEW_S)
 
@@ -75,7 +80,8 @@ def slew(s):  # type: ignore[no-untyped-def]
 @register_jitable
 def amplitudes(s):  # type: ignore[no-untyped-def]
     """Excursions of the hips and of the knees, relative to those of the table."""
-    return gait.hip_amplitude(s.speed) * (1 + s.varied[AMPLITUDE]), gait.knee_amplitude(s.speed)
+    hip = gait.hip_amplitude(s.speed) * (1 + s.varied[AMPLITUDE])
+    return hip, gait.knee_amplitude(s.speed) * (1 + s.varied[BEND])
 
 
 @register_jitable
@@ -88,6 +94,12 @@ def servo(s, ref, j, hip, knee, stagger):  # type: ignore[no-untyped-def]
     turned_out = ref.toe_out_right[j] * s.out_right + ref.toe_out_left[j] * s.out_left
     standing = ref.standing[j] + stagger * s.stagger * ref.stagger[j] + s.spread * ref.spread[j] - turned_out
     return factor, offset, standing, s.grade_forward * ref.ankles[j] + s.grade_left * ref.subtalar[j]
+
+
+@register_jitable
+def extra(s, ref, row, j, steady):  # type: ignore[no-untyped-def]
+    """What a servo's angle has beside the table's (rad): the swinging foot's turn, the pelvis's sinking."""
+    return ref.twist[row, j] * s.varied[TWIST] + ref.sinking[row, j] * steady
 
 
 @register_jitable
@@ -105,12 +117,13 @@ def targets(s, ref, rows, out):  # type: ignore[no-untyped-def]
     for i in range(count):
         rows[i] = row_at(ref, choose(resting, s.next_phase, s.phase + s.advance * ((i + 1) / count)))
     hip, knee = amplitudes(s)
+    steady = gait.steadiness(s.speed, s.turn)
     for j in range(len(ref.scale)):
         factor, offset, standing, slope = servo(s, ref, j, hip, knee, 1.0)
         for i in range(count):
             part = (i + 1) / count
             gate = s.gate_before + (s.gate - s.gate_before) * part
-            walking = ref.table[rows[i], j] * factor + offset
+            walking = ref.table[rows[i], j] * factor + offset + extra(s, ref, rows[i], j, steady)
             residual = (1 - part) * s.residual[j] + part * s.next_residual[j]
             out[i, j] = gate * walking + (1 - gate) * standing + slope + ref.scale[j] * residual
     hold_feet(s, ref, out)
@@ -121,9 +134,11 @@ def reference(s, ref, stagger, out):  # type: ignore[no-untyped-def]
     """Fill `out` (17,) rad with the reference angles of this moment."""
     row = row_at(ref, s.phase)
     hip, knee = amplitudes(s)
+    steady = gait.steadiness(s.speed, s.turn)
     for j in range(len(ref.scale)):
         factor, offset, standing, slope = servo(s, ref, j, hip, knee, stagger)
-        out[j] = s.gate * (ref.table[row, j] * factor + offset) + (1 - s.gate) * standing + slope
+        walking = ref.table[row, j] * factor + offset + extra(s, ref, row, j, steady)
+        out[j] = s.gate * walking + (1 - s.gate) * standing + slope
 
 
 # What a kernel fills is passed to it: an array that it returned would cost more than the kernel.

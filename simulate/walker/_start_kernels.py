@@ -31,7 +31,7 @@ _LANDED, _LATEST = 0.05, 0.3  # body weights on it, or so far into the next step
 # Lever arms (m) of a loaded foot's torques over the force on it: its centre of pressure stays so far
 # before the ankle and so near its middle line, and what turns it is a sixth of what friction can hold.
 _BACK, _FRONT = 0.005, 0.10
-_BACK_AFTER_A_STOP, _FRONT_AFTER_A_STOP, _ASIDE_AFTER_A_STOP = -0.01, 0.12, 0.04
+_BACK_AFTER_A_STOP, _FRONT_AFTER_A_STOP, _ASIDE_AFTER_A_STOP = 0.005, 0.12, 0.04
 # A slope asks for more, or twice as many would fall when they stop across one of 8 %.
 _TURN_ON_SLOPES = 0.12
 _ASIDE, _TURN = 0.02, 0.01

@@ -18,8 +18,10 @@ ACTION_SCALE = 3.3 * np.array([0.2, 0.2, 0.2] + [0.35, 0.25, 0.25, 0.35, 0.25, 0
 
 CREEP = 0.30  # m/s at most, of a walker that wishes to stand and drifts backwards
 
-# Places in `varied`: cadence, hip excursion (both relative), step width (m), toe-out of each foot (rad).
-CADENCE, AMPLITUDE, WIDTH, TOE_OUT_RIGHT, TOE_OUT_LEFT = range(5)
+# Places in `varied`: cadence, hip excursion (both relative), step width (m), toe-out of each foot (rad), how
+# far the swinging foot turns out on its way (rad), excursion of knee and ankle (relative).
+CADENCE, AMPLITUDE, WIDTH, TOE_OUT_RIGHT, TOE_OUT_LEFT, TWIST, BEND = range(7)
+N_VARIED = 7
 # Places in `level`.
 OF_PLACEMENT, OF_CADENCE, OF_TOE_OUT = range(3)
 
@@ -51,9 +53,9 @@ WALKER = np.dtype(
         ("level", float, 3),  # of variability: of foot placement, cadence and toe-out
         ("slow", float),  # part of the cadence
         ("asymmetry", float),
-        ("varied", float, 5),
-        ("varied_goal", float, 5),
-        ("varied_mean", float, 5),
+        ("varied", float, N_VARIED),
+        ("varied_goal", float, N_VARIED),
+        ("varied_mean", float, N_VARIED),
         # standing
         ("gate", float),  # 0 stands, 1 walks
         ("gate_before", float),  # this control step
@@ -62,6 +64,7 @@ WALKER = np.dtype(
         ("spread", float),  # rad, apart
         ("out_right", float),  # rad, turned out
         ("out_left", float),
+        ("waiting", float),  # s, for which it has stepped on the spot because no stand could begin
         ("stopping", bool),  # wishes to stand and is nearly there, or stands; not on steep slopes
         # setting out
         ("weight", float),  # N

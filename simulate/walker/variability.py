@@ -1,8 +1,10 @@
 """What keeps the gait from being a metronome: seeded scatter of timing, step length, width and toe-out.
 
-Per step: cadence N(0, 2.6 %) plus a slow AR(1) part (1.3 %, rho 0.9); placement, which is hip excursion
-N(0, 1.65 %) and step width AR(1) about 5.5 mm; toe-out of the landing foot N(0, 2.8 deg). Each slews within
-120 ms. A person's habits shift the means.
+Per step: cadence N(0, 2.47 %) plus a slow AR(1) part (1.26 %, rho 0.9); placement, which is hip excursion
+N(0, 2.3 %), excursion of knee and ankle N(0, 5.75 %) and step width AR(1) about 6.3 mm; toe-out of the
+landing foot N(0, 1.0 deg), and how far that foot turns out on its way N(0, 12 deg). Each slews within
+120 ms. Slow strides scatter more (Beauchet et al. 2009), those before a stop less. A person's habits shift
+the means.
 """
 
 from __future__ import annotations
@@ -11,11 +13,15 @@ import numpy as np
 
 from footfall.models.subject import Habits
 from footfall.simulate.walker._variability_kernels import draw_all
+from footfall.simulate.walker.state import N_VARIED
 from footfall.simulate.walker.state import WIDTH as WIDTH
 
 
 class Variability:
-    """Modulation of n walkers: cadence, hip excursion (relative), step width (m), toe-out right, left (rad).
+    """Modulation of n walkers, in the order of state.CADENCE to state.BEND.
+
+    Cadence, hip excursion (both relative), step width (m), toe-out right and left, turn of the swinging foot
+    (rad), excursion of knee and ankle (relative).
 
     Parameters
     ----------
@@ -24,7 +30,7 @@ class Variability:
     Attributes
     ----------
     level : (n, 3) factors on the standard deviations of foot placement, cadence and toe-out
-    value : (n, 5) as applied; the control step slews it towards `target` (n, 5)
+    value : (n, 7) as applied; the control step slews it towards `target` (n, 7)
     """
 
     def __init__(self, state: np.ndarray) -> None:
@@ -38,10 +44,11 @@ class Variability:
         self.slow[mask] = 0
         self.asymmetry[mask] = [habit.asymmetry for habit in habits]
         self.mean[mask] = [
-            (habit.cadence - 1, 0.0, habit.step_width, habit.toe_out, habit.toe_out) for habit in habits
+            (habit.cadence - 1, 0.0, habit.step_width, habit.toe_out, habit.toe_out, 0.0, 0.0)
+            for habit in habits
         ]
         self.value[mask] = self.target[mask] = self.mean[mask]
 
     def draw(self, rows: np.ndarray, rng: np.random.Generator) -> None:
         """New targets for the walkers `rows` (m,), which begin a step."""
-        draw_all(self._state, rows, rng.standard_normal((len(rows), 5)))
+        draw_all(self._state, rows, rng.standard_normal((len(rows), N_VARIED)))

@@ -206,7 +206,7 @@ class Walkers:
         self.mean_velocity[mask] = np.stack([speed, np.zeros(m)], 1)
         self._state["stagger"][mask] = self._state["spread"][mask] = 0
         self._state["out_right"][mask] = self._state["out_left"][mask] = toe_out[:, 0]
-        self._state["stopping"][mask] = False
+        self._state["stopping"][mask], self._state["waiting"][mask] = False, 0.0
         self.variability.place(mask, variability, habits)
         self.gate.value[mask], self.gate.closing[mask] = np.where(standing, 0.0, 1.0), standing
         self.setting_out[mask], self._state["shift"][mask] = False, 0

@@ -26,7 +26,7 @@ from footfall.simulate.walker._gait_kernels import REFERENCE
 from footfall.simulate.walker._steer_kernels import pursue
 from footfall.simulate.walker.feedback import GAIN_SCALE, GAIN_START, gain_records
 from footfall.simulate.walker.observation import MIRROR, N_OBSERVATION, SIGN, observe
-from footfall.simulate.walker.state import WALKER, Columns
+from footfall.simulate.walker.state import N_VARIED, WALKER, Columns
 from footfall.simulate.walker.walkers import N_ACTION, Walkers
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -123,7 +123,7 @@ def test_a_control_step_is_its_twin(seed: int) -> None:
     assert count == plain_stride(plain, other_rows)
     rows = rows[:count]
     np.testing.assert_array_equal(rows, other_rows[:count])
-    normal = rng.standard_normal((count, 5))
+    normal = rng.standard_normal((count, N_VARIED))
     _variability_kernels.draw_all(compiled, rows, normal)
     plain_draw(plain, rows, normal)
     assert_same(compiled, plain)
