@@ -42,6 +42,7 @@ _PENDULUM_S = 0.31  # sqrt(height of the centre of mass / g)
 _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
 _STANDING_POINT = -0.004  # m, centre of mass before the middle of the ankles
 _PATIENCE_S = 1.5  # on the spot; after twice that time a stand may begin within the second of two bounds
+_GENTLE = 0.03  # on steeper slopes such a stand tips more often
 _FORWARD, _FORWARD_AT_LAST = 0.05, 0.07  # m about the standing point: where the capture point may lie
 _SIDE_SHARE, _SIDE_AT_LAST = 0.25, 0.40  # of the feet's distance across
 _NARROWEST = 0.13  # m, of that distance
@@ -285,7 +286,8 @@ def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
     go = begins | stumbles
     steep = s.grade_forward * s.grade_forward + s.grade_left * s.grade_left > _STEEP * _STEEP
     # Stepping on the spot is less sure than a stand: whoever does it for long may stand less well.
-    late = clip((s.waiting - _PATIENCE_S) / _PATIENCE_S, 0.0, 1.0)
+    gentle = s.grade_forward * s.grade_forward + s.grade_left * s.grade_left < _GENTLE * _GENTLE
+    late = choose(gentle, clip((s.waiting - _PATIENCE_S) / _PATIENCE_S, 0.0, 1.0), 0.0)
     forward = _FORWARD + late * (_FORWARD_AT_LAST - _FORWARD)
     share = _SIDE_SHARE + late * (_SIDE_AT_LAST - _SIDE_SHARE)
     stagger = choose(steep, _STAGGER_AT_LAST, _STAGGER + late * (_STAGGER_AT_LAST - _STAGGER))

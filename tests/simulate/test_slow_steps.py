@@ -99,6 +99,9 @@ def test_a_stand_begins_when_the_body_can_be_caught(
         ({"capture_left": 0.0585}, 0.0, 2.25),
         ({"capture_left": 0.073}, 0.0, None),
         ({"stagger": 0.125}, 0.0, 2.25),
+        ({"stagger": 0.125}, 0.02, 2.25),
+        ({"stagger": 0.125}, 0.05, None),
+        ({"capture_forward": 0.06}, 0.05, None),
         ({"stagger": 0.145}, 0.08, None),
         ({"forward_velocity": 0.3}, 0.0, None),
     ],
@@ -106,7 +109,7 @@ def test_a_stand_begins_when_the_body_can_be_caught(
 def test_who_steps_on_the_spot_for_long_may_stand_less_well(
     change: dict[str, float], grade: float, seconds: float | None
 ) -> None:
-    """The bounds widen evenly from 1.5 to 3 s; while walking and in a stand nothing adds up."""
+    """The bounds widen from 1.5 to 3 s on gentle ground; while walking and in a stand nothing adds up."""
     state = np.zeros(1, WALKER)
     state["gate"], state["grade_left"], state["dt"], state["speed"] = 1.0, grade, 0.03, 0.3
     stand, step = GOOD._replace(**change), np.array([0.1])

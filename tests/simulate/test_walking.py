@@ -123,7 +123,7 @@ def test_a_fall_after_the_path_spoils_the_stand_and_not_the_walk(short_plan: Pla
 
     assert short_walk.meta["ends"] == "standing"
     stances = runs(short_walk.stance)
-    last = int((STAND_S + short_walk.t[stances[-1, 0]] - 0.2) / 0.03)
+    last = int((STAND_S + short_walk.t[stances[-1, 0]] - 0.5) / 0.03)
     policy = stock_policy()
     clumsy = walk(short_plan, Clumsy(policy.weights, policy.biases, policy.feedback_gains, "clumsy"))
     assert clumsy.meta["ends"] == "in mid-gait"
