@@ -20,6 +20,7 @@ measure() { # name, command
 measure gait python -m benchmarks.validation.gait_realism --docs docs
 measure stops python -m benchmarks.validation.stops
 measure starts python -m benchmarks.validation.starts
+measure turning_stops python -m benchmarks.validation.turning_stops
 measure scatter python -m benchmarks.validation.scatter
 measure courses python -m benchmarks.validation.courses
 measure units python -m benchmarks.validation.stock_units

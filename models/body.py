@@ -54,7 +54,7 @@ class Servo:
 _LEG_SERVOS = {
     "hip_flexion": Servo(500, 40, -200, 200),
     "hip_adduction": Servo(500, 40, -150, 150),
-    "hip_rotation": Servo(250, 16.0, -80, 80),
+    "hip_rotation": Servo(250, 16, -80, 80),
     "knee": Servo(400, 25, -180, 200),
     "ankle": Servo(300, 12, -160, 60),
     "subtalar": Servo(150, 6, -50, 50),

@@ -43,9 +43,7 @@ def stop(job: tuple[int, int]) -> Stopped:
     subjects = [draw_subject(rng) for _ in range(n)]
     models = [build_body(one.build, timestep=_STEP / one.time_scale) for one in subjects]
     policy = stock_policy()
-    walkers = Walkers(
-        models, policy.feedback_gains, rng=np.random.default_rng([seed, 1]), threads=0, substeps=_SUBSTEPS
-    )
+    walkers = Walkers(models, policy.feedback_gains, rng=np.random.default_rng([seed, 1]), substeps=_SUBSTEPS)
     walkers.place(
         np.ones(n, dtype=bool),
         phase=0.5 * rng.integers(2, size=n),

@@ -89,7 +89,7 @@ class Balance(NamedTuple):
     pitch (nose down positive) and roll are relative to gravity, yaw_error to the commanded heading;
     `foot_y` is the pelvis relative to the stance foot (m); places and velocities are along the ground.
     `step_phase` runs 0..1 over a step; `speed` is the commanded one. `climb` and `aslant` are the ground's
-    rise over run forward and to the left.
+    rise over run forward and to the side of the swing leg.
     """
 
     pitch: Any

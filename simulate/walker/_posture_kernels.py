@@ -75,7 +75,7 @@ def along_heading(s):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def wanted(s):  # type: ignore[no-untyped-def]
-    """Speed to reach (m/s): as commanded, but a walker that is to stand and drifts steps against it."""
+    """Speed to reach (m/s): as commanded, but a walker that is to stand and drifts backwards creeps on."""
     creep = clip(-_AGAINST_DRIFT * s.mean_velocity[0], 0.0, CREEP)
     return choose(s.closing, s.speed_goal, np.maximum(s.speed_goal, creep))
 

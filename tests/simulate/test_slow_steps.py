@@ -130,8 +130,8 @@ def test_who_steps_on_the_spot_for_long_may_stand_less_well(
         assert state["waiting"][0] == 0
 
 
-def test_a_walker_that_is_to_stand_steps_against_its_drift() -> None:
-    """At up to 0.3 m/s, if it drifts backwards; in a stand not at all."""
+def test_a_walker_that_is_to_stand_and_drifts_backwards_creeps_on() -> None:
+    """At up to 0.3 m/s; in a stand not at all, nor against a drift forwards."""
     cases = [  # drift, speed asked for, closing, speed wanted
         (-0.1, 0.0, False, 0.2),
         (-0.4, 0.0, False, 0.3),
