@@ -6,10 +6,10 @@ import pytest
 from footfall.models import gait
 from footfall.models.gait import INDEX
 from footfall.simulate.walker import _gait_kernels
-from footfall.simulate.walker._balance_kernels import Balance, Stand, decide, feedback
+from footfall.simulate.walker._balance_kernels import Balance, Stand, balance_of, decide, feedback
 from footfall.simulate.walker._posture_kernels import wanted
 from footfall.simulate.walker.feedback import Gains
-from footfall.simulate.walker.state import TWIST, WALKER, WIDTH, Columns
+from footfall.simulate.walker.state import BEND, TWIST, WALKER, WIDTH, Columns
 
 NO_GAINS = Gains(*[0.0] * len(Gains._fields))
 N_SERVOS = len(INDEX)
@@ -196,3 +196,28 @@ def test_only_a_swinging_foot_turns_out_further_and_it_lands_as_before(side: str
     assert own.max() <= 0
     np.testing.assert_allclose(own[:60], 0, atol=1e-12)
     np.testing.assert_allclose(own[92:], 0, atol=1e-12)
+
+
+@pytest.mark.parametrize("left_stance", [False, True])
+@pytest.mark.parametrize("left_up", [0.05, -0.05])
+def test_aslant_is_how_far_the_ground_rises_to_the_swinging_leg(left_stance: bool, left_up: float) -> None:
+    state = np.zeros(1, WALKER)
+    state["left_stance"], state["grade_left"], state["grade_forward"] = left_stance, left_up, 0.02
+    found = balance_of(Columns(state))
+    assert found.aslant == pytest.approx(-left_up if left_stance else left_up)
+    assert found.climb == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize("share", [0.1, -0.1])
+def test_a_drawn_bend_is_of_knees_and_ankles_alone(share: float) -> None:
+    """Their excursion grows by that share; every other servo does as before."""
+    state = np.zeros(2, WALKER)
+    state["gate"] = state["gate_before"] = 1.0
+    state["speed"] = 1.3
+    state["varied"][1, BEND] = share
+    for phase in (0.1, 0.35, 0.6, 0.85):
+        state["phase"] = state["next_phase"] = phase
+        usual, bent = _gait_kernels.reference_all(state, _gait_kernels.REFERENCE, 0.0)
+        for name, j in INDEX.items():
+            factor = 1 + share if name.startswith(("knee", "ankle")) else 1.0
+            assert bent[j] == pytest.approx(usual[j] * factor, abs=1e-12), name
