@@ -17,6 +17,9 @@ from footfall.errors import InputError
 REFERENCE_HEIGHT_M = 1.75
 REFERENCE_MASS_KG = 75.0
 
+# Soles by their softness: the contact's time constant (s). Lengths of the shoe do not differ.
+SHOES = {"stiff": 0.013, "walking": 0.015, "running": 0.026}
+
 
 @dataclass(frozen=True)
 class Build:
@@ -38,7 +41,7 @@ class Build:
     trunk_mass: float = 1.0
     leg_mass: float = 1.0
     friction: float = 1.0
-    sole_time: float = 0.015
+    sole_time: float = SHOES["walking"]
 
 
 @dataclass(frozen=True)
@@ -98,7 +101,7 @@ class Subject:
     toe_out_deg: float = 3.0
     asymmetry: float = 0.0
     friction: float = 1.0
-    sole_time_s: float = 0.015
+    sole_time_s: float = SHOES["walking"]
 
     def __post_init__(self) -> None:
         for key, (low, high) in _LIMITS.items():
@@ -134,9 +137,6 @@ class Subject:
             self.cadence, self.step_width_m / self.scale, float(np.radians(self.toe_out_deg)), self.asymmetry
         )
 
-
-# Soles by their softness: the contact's time constant (s). Lengths of the shoe do not differ.
-SHOES = {"stiff": 0.013, "walking": 0.015, "running": 0.026}
 
 # The paper's walks "were performed by two different subjects" (Borenstein et al. 2008, section 5).
 SUBJECTS = {
