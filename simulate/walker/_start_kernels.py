@@ -5,8 +5,8 @@ first foot leaves the ground. Until that foot lands, the torques of a loaded foo
 kept within what leaves the pressure under the sole, and the sole where it is: the gait, made for mid-walk,
 would else rock the foot on to its heel and twist it. After a stop the feet stand one before the other and
 apart; from there a shift of the weight falls more often than the gait's own step, so the body is only let
-fall forwards, and the ankle of the foot that steps is free. While stopping only the twist is bounded: the
-ankle brakes.
+fall forwards, and the ankle of the foot that steps is free; on steep slopes nothing is bounded. While
+stopping only the twist is bounded: the ankle brakes.
 """
 
 from __future__ import annotations
@@ -32,6 +32,9 @@ _LANDED, _LATEST = 0.05, 0.3  # body weights on it, or so far into the next step
 # before the ankle and so near its middle line, and what turns it is a sixth of what friction can hold.
 _BACK, _FRONT = 0.005, 0.10
 _BACK_AFTER_A_STOP, _FRONT_AFTER_A_STOP, _ASIDE_AFTER_A_STOP = 0.005, 0.12, 0.04
+# On steeper slopes nothing is held once the walker has stopped: of 640 stops of brisk walkers across 8 % 9
+# else end in a fall, most of them when they set out again, and 1 without.
+_STEEP = 0.065
 # A slope asks for more, or twice as many would fall when they stop across one of 8 %.
 _TURN_ON_SLOPES = 0.12
 _ASIDE, _TURN = 0.02, 0.01
@@ -49,6 +52,12 @@ _ROTATION, _ANKLE, _SUBTALAR = (INDEX[f"{name}_r"] - _RIGHT for name in ("hip_ro
 def as_placed(s):  # type: ignore[no-untyped-def]
     """The feet are side by side, where they were set down before the walk: it has not stopped yet."""
     return (s.stagger == 0.0) & (s.spread == 0.0)
+
+
+@register_jitable
+def steep(s):  # type: ignore[no-untyped-def]
+    """The ground is so steep that whoever stops there or sets out again needs all the torque."""
+    return s.grade_forward * s.grade_forward + s.grade_left * s.grade_left > _STEEP * _STEEP
 
 
 @register_jitable
@@ -98,10 +107,11 @@ def bound_foot(s, ref, out, stands, stance, load, servo, joint):  # type: ignore
     `stands`: through the first step; `stance`: by the phase of the gait.
     """
     loaded, placed, step = load > _LIFTED * s.weight, as_placed(s), (s.phase * 2) % 1
-    held = s.setting_out & (stands | (loaded & placed))
+    bounded = s.setting_out & (placed | np.logical_not(steep(s)))
+    held = bounded & (stands | (loaded & placed))
     # A foot that the last step unloads must not turn either.
     rests = s.closing | choose(stance, loaded & (step > _FLAT), step < _LEAVING)
-    lies = (s.setting_out & (stands | loaded)) | (s.stopping & rests)
+    lies = (bounded & (stands | loaded)) | (s.stopping & rests)
     force = np.maximum(load, _LIFTED * s.weight)
     first = s.setting_out & placed
     slope = np.sqrt(s.grade_forward * s.grade_forward + s.grade_left * s.grade_left)
