@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # After the walker has changed (weights, laws, body, shoes): measure anew whatever depends on it. Writes what the
 # benchmarks print to OUT, fills the tables and figures of docs/ and the five units of closed-loop.toml; what is
-# said about them in words (README, results.md, gait.md, iez.md, ihde.md) is left to you. One and a half hours or
-# more on two cores.
+# said about them in words, and the tables of results.md, sweeps.md, tuning.md, which_property.md and
+# which_parameter.md, are left to you. Three hours or more on two cores.
 #
 #     benchmarks/remeasure.sh [OUT]          (in an environment with .[test]; OUT: out/measured)
 set -euo pipefail
@@ -42,10 +42,22 @@ measure speed python -m benchmarks.speed.walker
 measure robustness python -m benchmarks.validation.robustness --seeds 20
 measure pushes python -m benchmarks.validation.robustness straight --metres 400 --push 10 --seeds 4
 measure studies python -m benchmarks.studies.pages --docs docs --out "$out/studies"
+measure shank python -m benchmarks.validation.shank --page docs/studies/mounts.md
+measure without_hdr python -m benchmarks.validation.without_hdr --figure docs/images/without_hdr.png --page docs/without_hdr.md
 measure hypotheses python -m benchmarks.validation.hypotheses --page docs/hypotheses.md
 measure directions python -m benchmarks.papers.ihde_hypotheses --page docs/hypotheses.md
+measure tried python -m benchmarks.papers.ihde_hypotheses --tried --page docs/hypotheses.md
+measure rooms python -m benchmarks.validation.hypotheses --scenarios rooms corridors --units 24
 measure wander python -m benchmarks.validation.hypotheses_wander --seeds 4 --page docs/hypotheses.md
-measure ways python -m benchmarks.validation.hypotheses_ways --page docs/hypotheses.md
+measure beliefs python -m benchmarks.validation.hypotheses_ways --page docs/hypotheses.md
 measure figures python -m benchmarks.validation.hypotheses_figures --figures docs/images
+for study in hdr-threshold rates; do
+    measure "$study" footfall sweep "$study" --out "$out/$study"
+done
+for study in nimu-heading nimu-correctors hdr-parameters hde-2010-parameters ihde-parameters ihde-plus-parameters \
+    hypotheses-parameters; do
+    measure "$study" footfall sensitivity "$study" --out "$out/$study"
+done
+measure hdr-closed-loop footfall tune hdr-closed-loop --out "$out/hdr-closed-loop"
 measure tutorial python docs/examples/spare_torque.py --seed 1 --out "$out/residual.npz" --page docs/tutorial_environment.md
 measure render footfall render straight -o docs/images/walker.png
