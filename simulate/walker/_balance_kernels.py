@@ -20,7 +20,7 @@ from footfall.models.body import HIP_HEIGHT, JOINTS, N_SERVOS, SENSOR_FOOT_POSIT
 from footfall.models.gait import INDEX, mask
 from footfall.simulate.walker._elementwise import choose, clip, turned
 from footfall.simulate.walker._posture_kernels import over_ground
-from footfall.simulate.walker._start_kernels import loads, set_out, shifted, steep
+from footfall.simulate.walker._start_kernels import STEEP, grade, loads, set_out, shifted
 from footfall.simulate.walker.feedback import SERVO_MIRROR, SERVO_SIGN
 from footfall.simulate.walker.state import ACTION_SCALE, CREEP
 
@@ -283,13 +283,12 @@ def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
     begins = set_out(s, s.speed_goal > GO_SPEED, step_phase)
     stumbles = s.closing & (s.gate < 0.3) & off_balance & np.logical_not(s.setting_out)
     go = begins | stumbles
-    all_torque = steep(s)
+    slope = grade(s)
     # Stepping on the spot is less sure than a stand: whoever does it for long may stand less well.
-    gentle = s.grade_forward * s.grade_forward + s.grade_left * s.grade_left < _GENTLE * _GENTLE
-    late = choose(gentle, clip((s.waiting - _PATIENCE_S) / _PATIENCE_S, 0.0, 1.0), 0.0)
+    late = choose(slope < _GENTLE, clip((s.waiting - _PATIENCE_S) / _PATIENCE_S, 0.0, 1.0), 0.0)
     forward = _FORWARD + late * (_FORWARD_AT_LAST - _FORWARD)
     share = _SIDE_SHARE + late * (_SIDE_AT_LAST - _SIDE_SHARE)
-    stagger = choose(all_torque, _STAGGER_AT_LAST, _STAGGER + late * (_STAGGER_AT_LAST - _STAGGER))
+    stagger = choose(slope > STEEP, _STAGGER_AT_LAST, _STAGGER + late * (_STAGGER_AT_LAST - _STAGGER))
     capturable = (
         (np.abs(stand.capture_forward) < forward)
         & (stand.forward_velocity < _FASTEST)
@@ -308,7 +307,7 @@ def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
     s.out_left = choose(new, -s.qpos[_TURN_L], s.out_left)
     nearly = (s.speed_goal <= GO_SPEED) & (s.speed < _STOP_SPEED)
     s.waiting = choose(nearly & np.logical_not(s.closing), s.waiting + s.dt, 0.0)
-    s.stopping = nearly & np.logical_not(s.setting_out | all_torque)
+    s.stopping = nearly & np.logical_not(s.setting_out | (slope > STEEP))
 
 
 @register_jitable
