@@ -23,10 +23,10 @@ from footfall.simulate.walker.state import (
 )
 
 CADENCE_SD, CADENCE_SLOW_SD, CADENCE_SLOW_RHO = 0.0247, 0.0126, 0.9
-AMPLITUDE_SD, BEND_SD = 0.0230, 0.0575
-WIDTH_SD, WIDTH_RHO = 0.0063, 0.5
+AMPLITUDE_SD, BEND_SD = 0.0215, 0.0540
+WIDTH_SD, WIDTH_RHO = 0.0045, 0.5
 TOE_OUT_SD = math.radians(1.0)
-TWIST_SD, MOST_TWIST = math.radians(12.0), 0.4  # gyros of real shoes: 16 to 29 deg/s (SD) of yaw
+TWIST_SD, MOST_TWIST = math.radians(11.5), 0.4  # gyros of real shoes: 16 to 29 deg/s (SD) of yaw
 USUAL_SPEED, SLOWEST, SLOW_POWER = 1.3, 1.0, 1.4  # slow strides scatter more (Beauchet et al. 2009)
 STAND_SPEED, CALM = 0.2, 0.3
 _SLOW_GAIN = CADENCE_SLOW_SD * math.sqrt(1 - CADENCE_SLOW_RHO**2)

@@ -1,8 +1,8 @@
 """What keeps the gait from being a metronome: seeded scatter of timing, step length, width and toe-out.
 
 Per step: cadence N(0, 2.47 %) plus a slow AR(1) part (1.26 %, rho 0.9); placement, which is hip excursion
-N(0, 2.3 %), excursion of knee and ankle N(0, 5.75 %) and step width AR(1) about 6.3 mm; toe-out of the
-landing foot N(0, 1.0 deg), and how far that foot turns out on its way N(0, 12 deg). Each slews within
+N(0, 2.15 %), excursion of knee and ankle N(0, 5.4 %) and step width AR(1) about 4.5 mm; toe-out of the
+landing foot N(0, 1.0 deg), and how far that foot turns out on its way N(0, 11.5 deg). Each slews within
 120 ms. Slow strides scatter more (Beauchet et al. 2009), those before a stop less. A person's habits shift
 the means.
 """
