@@ -71,6 +71,7 @@ def cause(path: Path, simulated: Feet, made_of: Mapping[str, float]) -> None:
         axis.text(max(value, 0) + 0.01, k, signed(value), va="center", fontsize=8)
     axis.axvline(0, color="#222222", lw=0.8)
     axis.set_xlim(min(0, *values) * 1.15, max(values) * 1.2)
+    axis.locator_params(axis="x", nbins=5)
     axis.grid(axis="y", visible=False)
     axis.set_xlabel("false gyro bias about the vertical (deg/s)")
     axis.set_title(
