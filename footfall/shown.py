@@ -7,6 +7,7 @@ asked for.
 from __future__ import annotations
 
 import html
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,20 +23,20 @@ AXES = dict(zip("xyz", ("#c1440e", "#6a9f3a", "#1f6fb4"), strict=True))  # of a 
 _ROWS = 3  # of a table's head and of its tail
 
 
-class Shown:
+class Shown(ABC):
     """Something with columns that a notebook shows as a table, gives to pandas, and draws."""
 
+    @abstractmethod
     def _columns(self) -> Mapping[str, Any]:
         """Name -> (n,) values."""
-        raise NotImplementedError
 
     def _units(self) -> Mapping[str, str]:
         """Column -> unit; "" or nothing for none."""
         return {}
 
+    @abstractmethod
     def _draw(self) -> Any:
         """Draw into a new figure of pyplot; its axes."""
-        raise NotImplementedError
 
     def to_pandas(self) -> Any:
         """The columns as a table of pandas.

@@ -92,7 +92,7 @@ def tried(close: HypothesesParams) -> dict[str, Way]:
     changes: dict[str, dict[str, Any]] = {
         "close": {},
         "`hypotheses` 128": {"hypotheses": 128},
-        "`wander_m` 0.015": {"wander_m": (0.015,)},
+        "half of `wander_m`": {"wander_m": (close.wander_m[0] / 2,)},
         "`scales` 1": {"scales": (1.0,), "bias": UNSURE},
         "`scales` 0.1": {"scales": (0.1,), "bias": UNSURE / 0.1},
         "`beside_deg` 0.1": {"beside": radians(0.1)},
@@ -119,7 +119,7 @@ def main() -> None:
     args = parser.parse_args()
     tuning, seeds = walks_of(args)
     if args.tried:
-        ways = tried(followed(0.03, 0.2, 0.5, 0.2))  # as chosen on the tuning walks
+        ways = tried(tune(tuning, args.processes))
         sheet = table(list(ways), judged(list(ways.values()), seeds, args.processes, "judging", TESTS[2:]))
         sheet.name = "ways on the third test"
         sheet.show()

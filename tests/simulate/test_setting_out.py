@@ -360,7 +360,7 @@ def test_shoes_that_overlap_push_each_other_aside(forwards: float) -> None:
     assert gap(model, data) > -0.001
 
 
-def test_shoes_pass_through_each_other_by_a_centimetre_in_sharp_turns_at_most() -> None:
+def test_shoes_hardly_pass_through_each_other_in_sharp_turns() -> None:
     """24 drawn people turn sharply, 0.9 rad/s at 0.8 m/s: half of them by 4 mm, nine of ten by 11 mm at most.
 
     Without the contact of shoe and shoe it is 21 mm for nine of ten.

@@ -4,23 +4,12 @@ import numpy as np
 import pytest
 
 from footfall.models.subject import Habits
-from footfall.simulate.walker._variability_kernels import (
-    AMPLITUDE_SD,
-    BEND_SD,
-    CADENCE_SD,
-    CADENCE_SLOW_SD,
-    MOST_TWIST,
-    TOE_OUT_SD,
-    TWIST_SD,
-    WIDTH_RHO,
-    WIDTH_SD,
-)
 from footfall.simulate.walker.state import AMPLITUDE, BEND, CADENCE, N_VARIED, TWIST, WALKER, WIDTH
 from footfall.simulate.walker.variability import Variability
 
 
 def test_variability_has_the_stated_spread() -> None:
-    """Targets drawn over many steps scatter as people's do about their habits; level 0 is a metronome."""
+    """Targets drawn over many steps scatter as docs/walker.md states; level 0 is a metronome."""
     n = 4000
     everyone, rng = np.ones(n, dtype=bool), np.random.default_rng(1)
     habits = Habits(cadence=1.03, step_width=0.01, toe_out=0.1, asymmetry=0.0)
@@ -33,14 +22,15 @@ def test_variability_has_the_stated_spread() -> None:
         state["next_phase"] = half / 2
         for group in (lively, still):
             group.draw(np.arange(n), rng)
-    assert lively.target[:, 0].std() == pytest.approx(np.hypot(CADENCE_SD, CADENCE_SLOW_SD), rel=0.05)
+    assert lively.target[:, 0].std() == pytest.approx(np.hypot(0.0247, 0.0126), rel=0.05)
     assert lively.target[:, 0].mean() == pytest.approx(0.03, abs=0.003)
-    assert lively.target[:, 3].std() == pytest.approx(TOE_OUT_SD, rel=0.05)
-    bounded = np.clip(rng.normal(0, TWIST_SD, 100_000), -MOST_TWIST, MOST_TWIST)
+    assert lively.target[:, 3].std() == pytest.approx(np.radians(1.0), rel=0.05)
+    bounded = np.clip(rng.normal(0, np.radians(11.5), 100_000), -0.4, 0.4)
     assert lively.target[:, TWIST].std() == pytest.approx(bounded.std(), rel=0.05)
     assert lively.target[:, TWIST].mean() == pytest.approx(0, abs=0.01)
-    assert lively.target[:, BEND].std() == pytest.approx(BEND_SD, rel=0.05)
-    assert lively.target[:, AMPLITUDE].std() == pytest.approx(AMPLITUDE_SD, rel=0.05)
+    assert lively.target[:, BEND].std() == pytest.approx(0.054, rel=0.03)
+    assert lively.target[:, AMPLITUDE].std() == pytest.approx(0.0215, rel=0.03)
+    assert lively.target[:, WIDTH].std() == pytest.approx(0.0045 / np.sqrt(1 - 0.5**2), rel=0.03)
     np.testing.assert_allclose(still.target, np.tile([0.03, 0, 0.01, 0.1, 0.1, 0, 0], (n, 1)), atol=1e-12)
 
 
@@ -114,5 +104,5 @@ def test_who_is_to_stand_steps_with_care_and_only_the_width_scatters_on() -> Non
     walking, stopping = scatter(1.0, 1.0), scatter(1.0, 0.0)
     calm = stopping / walking
     assert calm[WIDTH] == pytest.approx(1)
-    assert stopping[WIDTH] == pytest.approx(LITTLE * WIDTH_SD / np.sqrt(1 - WIDTH_RHO**2), rel=0.05)
+    assert stopping[WIDTH] == pytest.approx(LITTLE * 0.0045 / np.sqrt(1 - 0.5**2), rel=0.05)
     np.testing.assert_allclose(np.delete(calm, WIDTH), 0.3, rtol=0.02)

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from benchmarks.validation import scatter
 from footfall.errors import InputError
 from footfall.models.mount import MOUNTS
 from footfall.models.policy import Policy, stock_policy
 from footfall.models.route import Ground, Route
-from footfall.models.subject import SUBJECTS, Subject
+from footfall.models.subject import Subject
 from footfall.pdr.strapdown import integrate
 from footfall.runs import runs
 from footfall.simulate.episode import STAND_S, Episode, FallError
@@ -91,21 +92,12 @@ def test_the_parts_of_variability_are_each_times_the_whole(short_plan: Plan) -> 
     np.testing.assert_allclose(level.walkers.variability.level, [[0.1, 0.0, 0.8]])
 
 
-def test_strides_on_long_straights_scatter_as_peoples_do(short_plan: Plan) -> None:
+def test_strides_on_long_straights_scatter_as_peoples_do() -> None:
     """Real feet there: course 0.6 to 1.4 deg, stance yaw 1.3 to 2.6 (SD about the straight line)."""
-    n = 2001
-    s, nil = np.arange(n) * 0.05, np.zeros(n)
-    gait = Gait(pace_m_s=1.3)
-    plan = replace(short_plan, route=Route(s, s, nil, nil, nil, nil), gait=gait, calibration_s=1.0)
-    plan = replace(plan, subject=SUBJECTS["taller"])  # whose steps scatter most
-    course, yaw = [], []
-    for seed in (901, 902, 903):
-        falls, steady = walk(replace(plan, seed=seed)).footfalls, slice(3, -3)
-        x, y = np.diff(falls.position[steady, :2], axis=0).T
-        course.append(np.degrees(np.arctan2(y, x)).std(ddof=1))
-        yaw.append(np.degrees(falls.heading[steady]).std(ddof=1))
-    assert 0.6 < np.mean(course) < 1.4
-    assert 1.3 < np.mean(yaw) < 2.6
+    # The taller one's scatter most.
+    found = [scatter.measure(("taller", 1.3, 0.0, seed)) for seed in (901, 902, 903)]
+    assert 0.6 < np.mean([one.course_sd_deg for one in found]) < 1.4
+    assert 1.3 < np.mean([one.stance_yaw_sd_deg for one in found]) < 2.6
 
 
 def test_it_changes_its_pace_where_it_is_asked_to(short_plan: Plan) -> None:
