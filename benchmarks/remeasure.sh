@@ -43,6 +43,7 @@ measure robustness python -m benchmarks.validation.robustness --seeds 20
 measure pushes python -m benchmarks.validation.robustness straight --metres 400 --push 10 --seeds 4
 measure studies python -m benchmarks.studies.pages --docs docs --out "$out/studies"
 measure shank python -m benchmarks.validation.shank --page docs/studies/mounts.md
+measure strides python -m benchmarks.validation.strides --page docs/real_recordings.md
 measure without_hdr python -m benchmarks.validation.without_hdr --figure docs/images/without_hdr.png --page docs/without_hdr.md
 measure hypotheses python -m benchmarks.validation.hypotheses --page docs/hypotheses.md
 measure directions python -m benchmarks.papers.ihde_hypotheses --page docs/hypotheses.md
