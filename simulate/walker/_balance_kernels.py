@@ -19,8 +19,9 @@ from footfall.compiled import kernel
 from footfall.models.body import HIP_HEIGHT, JOINTS, N_SERVOS, SENSOR_FOOT_POSITION
 from footfall.models.gait import INDEX, mask
 from footfall.simulate.walker._elementwise import choose, clip, turned
+from footfall.simulate.walker._foot_kernels import STEEP, grade, loads
 from footfall.simulate.walker._posture_kernels import over_ground
-from footfall.simulate.walker._start_kernels import STEEP, grade, loads, set_out, shifted
+from footfall.simulate.walker._start_kernels import set_out, shifted
 from footfall.simulate.walker.feedback import SERVO_MIRROR, SERVO_SIGN
 from footfall.simulate.walker.state import ACTION_SCALE, CREEP
 

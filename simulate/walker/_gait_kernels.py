@@ -13,7 +13,8 @@ from footfall.compiled import kernel
 from footfall.models import gait
 from footfall.models.body import SERVOS
 from footfall.simulate.walker._elementwise import choose
-from footfall.simulate.walker._start_kernels import as_placed, hold_feet
+from footfall.simulate.walker._start_kernels import as_placed, hold_setting_out
+from footfall.simulate.walker._stop_kernels import hold_stopping
 from footfall.simulate.walker.state import (
     ACTION_SCALE,
     AMPLITUDE,
@@ -126,7 +127,8 @@ def targets(s, ref, rows, out):  # type: ignore[no-untyped-def]
             walking = ref.table[rows[i], j] * factor + offset + extra(s, ref, rows[i], j, steady)
             residual = (1 - part) * s.residual[j] + part * s.next_residual[j]
             out[i, j] = gate * walking + (1 - gate) * standing + slope + ref.scale[j] * residual
-    hold_feet(s, ref, out)
+    hold_setting_out(s, ref, out)
+    hold_stopping(s, ref, out)
 
 
 @register_jitable

@@ -19,7 +19,8 @@ from footfall.simulate.episode import stroll
 from footfall.simulate.plan import Plan
 from footfall.simulate.walker._balance_kernels import act_all
 from footfall.simulate.walker._gait_kernels import REFERENCE
-from footfall.simulate.walker._start_kernels import hold_feet, set_out
+from footfall.simulate.walker._start_kernels import hold_setting_out, set_out
+from footfall.simulate.walker._stop_kernels import hold_stopping
 from footfall.simulate.walker.feedback import gain_records
 from footfall.simulate.walker.state import WALKER, Columns
 from footfall.simulate.walker.walkers import Walkers
@@ -294,7 +295,8 @@ def test_torques_of_a_loaded_foot_leave_its_pressure_under_it(seed: int) -> None
     state["sensor"][:, SENSOR_TOUCH] = touch
     wanted = rng.normal(0, 0.4, (n, 3, N_SERVOS))
     found = wanted.copy()
-    hold_feet(Columns(state), REFERENCE.view(np.recarray)[0], np.moveaxis(found, 0, -1))
+    for hold in (hold_setting_out, hold_stopping):
+        hold(Columns(state), REFERENCE.view(np.recarray)[0], np.moveaxis(found, 0, -1))
     torque, asked = (
         REFERENCE["kp"] * (one - state["qpos"][:, None, 7 + SERVO_JOINT]) for one in (found, wanted)
     )
