@@ -22,6 +22,7 @@ from footfall.simulate.walker._elementwise import choose, clip, turned
 from footfall.simulate.walker._foot_kernels import STEEP, grade, loads
 from footfall.simulate.walker._posture_kernels import over_ground
 from footfall.simulate.walker._start_kernels import set_out, shifted
+from footfall.simulate.walker._stop_kernels import HOLD_SOONER, leg_gate
 from footfall.simulate.walker.feedback import SERVO_MIRROR, SERVO_SIGN
 from footfall.simulate.walker.state import ACTION_SCALE, CREEP
 
@@ -43,7 +44,9 @@ _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
 _STANDING_POINT = -0.004  # m, centre of mass before the middle of the ankles
 _PATIENCE_S = 1.5  # on the spot; after twice that time a stand may begin within the second of two bounds
 _GENTLE = 0.03  # on steeper slopes such a stand tips more often
-_FORWARD, _FORWARD_AT_LAST = 0.05, 0.07  # m about the standing point: where the capture point may lie
+# m about the standing point: where the capture point may lie, and the share of it that may be behind, or the
+# feet roll on to their heels
+_FORWARD, _FORWARD_AT_LAST, _BACK_SHARE = 0.05, 0.07, 0.6
 _SIDE_SHARE, _SIDE_AT_LAST = 0.25, 0.40  # of the feet's distance across
 _NARROWEST = 0.13  # m, of that distance
 _STAGGER, _STAGGER_AT_LAST = 0.11, 0.14  # m; a longer stand tips slowly, and its feet rock
@@ -281,6 +284,7 @@ def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
     off_balance = (np.abs(stand.capture_forward - 0.005) > 0.115 + 0.3 * stand.stagger) | (
         np.abs(stand.capture_left) > stand.width / 2 + 0.035
     )
+    s.capture = stand.capture_forward
     begins = set_out(s, s.speed_goal > GO_SPEED, step_phase)
     stumbles = s.closing & (s.gate < 0.3) & off_balance & np.logical_not(s.setting_out)
     go = begins | stumbles
@@ -291,7 +295,8 @@ def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
     share = _SIDE_SHARE + late * (_SIDE_AT_LAST - _SIDE_SHARE)
     stagger = choose(slope > STEEP, _STAGGER_AT_LAST, _STAGGER + late * (_STAGGER_AT_LAST - _STAGGER))
     capturable = (
-        (np.abs(stand.capture_forward) < forward)
+        (stand.capture_forward < forward)
+        & (stand.capture_forward > -_BACK_SHARE * forward)
         & (stand.forward_velocity < _FASTEST)
         & (np.abs(stand.capture_left) < share * stand.width)
         & (stand.width > _NARROWEST)
@@ -330,8 +335,9 @@ def act(s, g, action):  # type: ignore[no-untyped-def]
         m = SERVO_MIRROR[j]
         here = clip(action[j], -1.0, 1.0) + s.feedback[j] / ACTION_SCALE[j]
         there = clip(action[m], -1.0, 1.0) + s.feedback[m] / ACTION_SCALE[m]
-        walking = s.gate_before * choose(s.left_stance, SERVO_SIGN[j] * there, here)
-        standing = (1 - s.gate_before) * standing_offset(s, stand, j) / ACTION_SCALE[j]
+        gate = leg_gate(s, s.gate_before, j, HOLD_SOONER)
+        walking = gate * choose(s.left_stance, SERVO_SIGN[j] * there, here)
+        standing = (1 - gate) * standing_offset(s, stand, j) / ACTION_SCALE[j]
         s.next_residual[j] = clip(walking + standing, -_RESIDUAL_LIMIT, _RESIDUAL_LIMIT)
 
 

@@ -25,6 +25,7 @@ TURN, TURN_ON_SLOPES = 0.01, 0.12
 _TOUCH_R, _TOUCH_L = SENSOR_TOUCH.start, SENSOR_TOUCH.start + 3
 # The servos of a leg are in a row, and so are its joints.
 RIGHT, LEFT = INDEX["hip_flexion_r"], INDEX["hip_flexion_l"]
+LEG = LEFT - RIGHT
 RIGHT_JOINT, LEFT_JOINT = JOINTS.index("hip_flexion_r"), JOINTS.index("hip_flexion_l")
 ROTATION, ANKLE, SUBTALAR = (INDEX[f"{name}_r"] - RIGHT for name in ("hip_rotation", "ankle", "subtalar"))
 

@@ -14,7 +14,7 @@ from footfall.models import gait
 from footfall.models.body import SERVOS
 from footfall.simulate.walker._elementwise import choose
 from footfall.simulate.walker._start_kernels import as_placed, hold_setting_out
-from footfall.simulate.walker._stop_kernels import hold_stopping
+from footfall.simulate.walker._stop_kernels import POSE_SOONER, hold_stopping, leg_gate
 from footfall.simulate.walker.state import (
     ACTION_SCALE,
     AMPLITUDE,
@@ -123,7 +123,7 @@ def targets(s, ref, rows, out):  # type: ignore[no-untyped-def]
         factor, offset, standing, slope = servo(s, ref, j, hip, knee, 1.0)
         for i in range(count):
             part = (i + 1) / count
-            gate = s.gate_before + (s.gate - s.gate_before) * part
+            gate = leg_gate(s, s.gate_before + (s.gate - s.gate_before) * part, j, POSE_SOONER)
             walking = ref.table[rows[i], j] * factor + offset + extra(s, ref, rows[i], j, steady)
             residual = (1 - part) * s.residual[j] + part * s.next_residual[j]
             out[i, j] = gate * walking + (1 - gate) * standing + slope + ref.scale[j] * residual

@@ -64,6 +64,7 @@ WALKER = np.dtype(
         ("spread", float),  # rad, apart
         ("out_right", float),  # rad, turned out
         ("out_left", float),
+        ("capture", float),  # m, of the capture point before the standing point
         ("waiting", float),  # s, for which it has stepped on the spot because no stand could begin
         ("stopping", bool),  # wishes to stand and is nearly there, or stands; not on steep slopes
         # setting out

@@ -279,8 +279,12 @@ def test_torques_of_a_loaded_foot_leave_its_pressure_under_it(seed: int) -> None
     """Of who sets out, feet that stand or carry 0.2 body weights; no other target is touched.
 
     After a stop the bounds are wider, the foot that steps may push off with its ankle, and on steep slopes
-    nothing is bounded. Of who comes to a stand only the twist is bounded: of the foot that the gait stands on
-    once it is flat, of the other one until it leaves, and of both once the stand is decided.
+    nothing is bounded. Of who comes to a stand the twist is bounded: of the foot that the gait stands on once
+    it is flat, of the other one until it leaves, and of both once the stand is decided. So is the ankle, but
+    while stepping only of a body that moves forwards and is not far behind its feet: the pressure stays at
+    most 3 cm behind the ankle, 1 cm late in the step, of a leaving foot and in a stand. There it is more
+    where the capture point is more than 4 cm behind, and 9.5 cm before the ankle at most, while that point is
+    not far ahead.
     """
     rng, n = np.random.default_rng(seed), 16
     state = np.zeros(n, WALKER)
@@ -290,6 +294,7 @@ def test_torques_of_a_loaded_foot_leave_its_pressure_under_it(seed: int) -> None
     state["stopping"], state["closing"], state["left_stance"] = rng.random((3, n)) < [[0.7], [0.3], [0.5]]
     state["stopping"] &= ~state["setting_out"]
     state["phase"] = rng.random(n)
+    state["capture"], state["mean_velocity"][:, 0] = rng.normal(0, 0.1, (2, n))
     state["qpos"] = rng.normal(0, 0.2, state["qpos"].shape)
     touch = rng.uniform(0, 100, (n, 6))
     state["sensor"][:, SENSOR_TOUCH] = touch
@@ -313,9 +318,20 @@ def test_torques_of_a_loaded_foot_leave_its_pressure_under_it(seed: int) -> None
         rests = state["closing"] | np.where(stance, loaded & (step > 0.15), step < 0.25)
         lies = (bound_now & (stands | loaded)) | (state["stopping"] & rests)
         first = state["setting_out"] & placed
+        capture, stands_now = state["capture"], state["stopping"] & state["closing"]
+        steps = (
+            state["stopping"] & ~state["closing"] & (state["mean_velocity"][:, 0] > 0.05) & (capture > -0.115)
+        )
+        flat, leaving = stance & loaded & (step > 0.15), ~stance & (step < 0.25)
+        heel = 0.01 + np.maximum(-0.04 - capture, 0)
         for name, who, low, high in (
             ("ankle", held & placed, -0.1, -0.005),
             ("ankle", held & ~placed, -0.12, -0.005),
+            ("ankle", steps & flat & (step <= 0.68), -9, 0.03),
+            ("ankle", steps & flat & (step > 0.68), -9, 0.01),
+            ("ankle", steps & leaving, -9, 0.01),
+            ("ankle", stands_now & (capture < 0.05), -0.095, heel),
+            ("ankle", stands_now & (capture >= 0.05), -9, heel),
             ("hip_rotation", lies & first, -0.01, 0.01),
             ("hip_rotation", lies & ~first, -0.01 - 0.12 * slope, 0.01 + 0.12 * slope),
             ("subtalar", held & placed, -0.02, 0.02),

@@ -69,7 +69,8 @@ GOOD = Stand(
     [
         ({}, 0.0, True),
         ({"capture_forward": 0.06}, 0.0, False),
-        ({"capture_forward": -0.06}, 0.0, False),
+        ({"capture_forward": -0.029}, 0.0, True),
+        ({"capture_forward": -0.031}, 0.0, False),
         ({"capture_left": 0.05}, 0.0, False),
         ({"capture_left": -0.05}, 0.0, False),
         ({"forward_velocity": 0.3}, 0.0, False),
@@ -93,7 +94,8 @@ def test_a_stand_begins_when_the_body_can_be_caught(
     ("change", "grade", "seconds"),
     [
         ({"capture_forward": 0.06}, 0.0, 2.25),
-        ({"capture_forward": -0.06}, 0.0, 2.25),
+        ({"capture_forward": -0.036}, 0.0, 2.25),
+        ({"capture_forward": -0.043}, 0.0, None),
         ({"capture_forward": 0.069}, 0.0, 2.925),
         ({"capture_forward": 0.071}, 0.0, None),
         ({"capture_left": 0.0585}, 0.0, 2.25),
