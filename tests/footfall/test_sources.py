@@ -17,7 +17,7 @@ for module in sys.argv[1:]:
 print(json.dumps({name: hasattr(module, "__path__") for name, module in sys.modules.items()
                   if name.startswith("footfall.")}))
 """
-WALKER = ("state", "walkers", "steering", "disturbance", "_balance_kernels", "_start_kernels")
+WALKER = ("state", "walkers", "steering", "disturbance", "_balance_kernels", "_stop_kernels")
 
 
 @pytest.mark.parametrize("stage", STAGES)
