@@ -86,8 +86,10 @@ def test_a_stand_begins_when_the_body_can_be_caught(
 ) -> None:
     state = np.zeros(1, WALKER)
     state["gate"], state["grade_left"] = 1.0, grade
-    decide(Columns(state), GOOD._replace(**change), np.array([0.1]))
+    body = GOOD._replace(**change)
+    decide(Columns(state), body, np.array([0.1]))
     assert bool(state["closing"][0]) == stands
+    assert state["capture"][0] == body.capture_forward
 
 
 @pytest.mark.parametrize(
