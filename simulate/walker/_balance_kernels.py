@@ -284,7 +284,7 @@ def decide(s, stand, step_phase):  # type: ignore[no-untyped-def]
     off_balance = (np.abs(stand.capture_forward - 0.005) > 0.115 + 0.3 * stand.stagger) | (
         np.abs(stand.capture_left) > stand.width / 2 + 0.035
     )
-    s.capture = stand.capture_forward
+    s.capture = choose(s.fresh, 0.0, stand.capture_forward)
     begins = set_out(s, s.speed_goal > GO_SPEED, step_phase)
     stumbles = s.closing & (s.gate < 0.3) & off_balance & np.logical_not(s.setting_out)
     go = begins | stumbles

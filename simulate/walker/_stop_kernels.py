@@ -37,9 +37,9 @@ _MOVES, _FAR_BEHIND = 0.05, -0.115
 # the ankle: in the step, late in it, and of the foot that is leaving.
 _HEEL, _HEEL_LATE, _HEEL_LEAVING = 0.03, 0.01, 0.01
 _LATE = 0.68
-# In a stand: behind the ankle, and as much more as the capture point is farther behind; before the ankle,
-# while the capture point is not so far ahead.
-_STANDING_HEEL, _BEHIND, _STANDING_TOES, _AHEAD = 0.01, -0.04, 0.095, 0.05
+# In a stand: behind the ankle, and as much more as the capture point is farther behind; likewise before it,
+# or a body that its rear foot carries could not be held.
+_STANDING_HEEL, _BEHIND, _STANDING_TOES, _AHEAD = 0.01, -0.04, 0.095, 0.02
 _ANY = 9.0  # m, no bound
 POSE_SOONER, HOLD_SOONER = 12.0, 2.0  # how many times as fast that leg takes the stand's pose, and its hold
 
@@ -66,7 +66,7 @@ def hold_foot(s, ref, out, stance, load, servo, joint):  # type: ignore[no-untyp
     force = np.maximum(load, LIFTED * s.weight)
     heel = choose(leaves, _HEEL_LEAVING, choose(step > _LATE, _HEEL_LATE, _HEEL))
     heel = choose(stands, _STANDING_HEEL + np.maximum(_BEHIND - s.capture, 0.0), heel) * force
-    toes = choose(stands & (s.capture < _AHEAD), _STANDING_TOES, _ANY) * force
+    toes = choose(stands, _STANDING_TOES + np.maximum(s.capture - _AHEAD, 0.0), _ANY) * force
     turn = (TURN + TURN_ON_SLOPES * grade(s)) * force
     held = steps & moves & (flat | leaves)
     bound(s, ref, out, held | stands, servo + ANKLE, joint + ANKLE, -toes, heel)

@@ -92,6 +92,13 @@ def test_a_stand_begins_when_the_body_can_be_caught(
     assert state["capture"][0] == body.capture_forward
 
 
+def test_without_sensors_the_capture_point_is_taken_for_the_standing_point() -> None:
+    state = np.zeros(2, WALKER)
+    state["fresh"] = [True, False]
+    decide(Columns(state), GOOD, np.array([0.1]))
+    assert state["capture"].tolist() == [0.0, GOOD.capture_forward]
+
+
 @pytest.mark.parametrize(
     ("change", "grade", "seconds"),
     [

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks.validation.starts import PLACES
-from footfall.models.body import N_SERVOS
+from footfall.models.body import N_SERVOS, SENSOR_TOUCH
 from footfall.models.gait import INDEX
 from footfall.models.subject import draw_subject
 from footfall.simulate.learn import still_feet
@@ -87,8 +87,8 @@ def test_torques_of_a_foot_that_comes_to_rest_leave_it_flat(seed: int) -> None:
 
     The twist is bounded, and the ankle, but while stepping only of a body that moves forwards and is not
     far behind its feet: the pressure stays at most 3 cm behind the ankle, 1 cm late in the step, of a leaving
-    foot and in a stand. There it is more where the capture point is more than 4 cm behind, and 9.5 cm before
-    the ankle at most, while that point is less than 5 cm ahead.
+    foot and in a stand. There it is more where the capture point is more than 4 cm behind. Before the ankle
+    it is 9.5 cm at most, more where that point is more than 2 cm ahead.
     """
     rng, n = np.random.default_rng(seed), 16
     state, load = held_state(rng, n)
@@ -98,7 +98,7 @@ def test_torques_of_a_foot_that_comes_to_rest_leave_it_flat(seed: int) -> None:
     stands = state["stopping"] & state["closing"]
     steps = state["stopping"] & ~state["closing"]
     moves = steps & (state["mean_velocity"][:, 0] > 0.05) & (capture > -0.115)
-    behind = 0.01 + np.maximum(-0.04 - capture, 0)
+    behind, ahead = 0.01 + np.maximum(-0.04 - capture, 0), 0.095 + np.maximum(capture - 0.02, 0)
     turn = 0.01 + 0.12 * np.hypot(state["grade_forward"], state["grade_left"])
     bounds = []
     for foot, side in enumerate("rl"):
@@ -108,11 +108,24 @@ def test_torques_of_a_foot_that_comes_to_rest_leave_it_flat(seed: int) -> None:
             (f"ankle_{side}", moves & flat & (step <= 0.68), -9.0, 0.03),
             (f"ankle_{side}", moves & flat & (step > 0.68), -9.0, 0.01),
             (f"ankle_{side}", moves & leaves, -9.0, 0.01),
-            (f"ankle_{side}", stands & (capture < 0.05), -0.095, behind),
-            (f"ankle_{side}", stands & (capture >= 0.05), -9.0, behind),
+            (f"ankle_{side}", stands, -ahead, behind),
             (f"hip_rotation_{side}", stands | (steps & (flat | leaves)), -turn, turn),
         ]
     assert_held(hold_stopping, rng, state, bounds)
+
+
+def test_a_body_that_its_rear_foot_carries_can_be_held() -> None:
+    """Feet 11 cm one before the other: the pressure may come before the capture point, wherever it lies."""
+    capture = np.linspace(-0.04, 0.08, 25)
+    state = np.zeros(len(capture), WALKER)
+    state["stopping"] = state["closing"] = True
+    state["capture"], state["weight"] = capture, 700.0
+    state["sensor"][:, SENSOR_TOUCH.start + 1] = 700.0
+    found = np.full((1, N_SERVOS, len(capture)), -1.0)
+    hold_stopping(Columns(state), REFERENCE.view(np.recarray)[0], found)
+    ankle = INDEX["ankle_r"]
+    before_the_ankle = -REFERENCE["kp"][0, ankle] * found[0, ankle] / 700.0
+    assert (before_the_ankle - 0.055 > capture + 0.015).all()
 
 
 def closing(gate: float, n: int = 4) -> np.ndarray:
