@@ -49,7 +49,7 @@ def asked(study: Study) -> str:
     over = "each unit by itself" if file.units_as_factor else f"{file.over} over {cases} units"
     methods = " and ".join(label_of(method.name) for method in study.base.methods[:2])
     methods = methods if len(study.base.methods) <= 2 else f"{len(study.base.methods)} methods"
-    what = ", as a ratio" if file.of == "ratio" else ""
+    what = ", by its logarithm" if file.of == "ratio" else ""
     return f"{WORDS[file.metric]} of {methods} on {file.scenario}, {over}{what}"
 
 
