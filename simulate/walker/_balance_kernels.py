@@ -41,7 +41,8 @@ _STOP_SPEED = CREEP + 0.05
 _GATE_DOWN_S, _GATE_UP_S, _FIRST_GATE_UP_S = 0.23, 0.35, 0.40
 _PENDULUM_S = 0.31  # sqrt(height of the centre of mass / g)
 _TRUNK_ARM = 0.18  # m by which the centre of mass moves per rad of trunk lean
-_STANDING_POINT = -0.004  # m, centre of mass before the middle of the ankles
+# m, centre of mass before the middle of the feet's own, which are 5 cm before the ankles
+_STANDING_POINT = -0.004
 _PATIENCE_S = 1.5  # on the spot; after twice that time a stand may begin within the second of two bounds
 _GENTLE = 0.03  # on steeper slopes such a stand tips more often
 # m about the standing point: where the capture point may lie, and the share of it that may be behind, or the
@@ -52,7 +53,7 @@ _NARROWEST = 0.13  # m, of that distance
 _STAGGER, _STAGGER_AT_LAST = 0.11, 0.14  # m; a longer stand tips slowly, and its feet rock
 _FASTEST = 0.25  # m/s; of the closings of a half-trained walker within all these bounds 86 % held, else 46 %
 _LOADED = 100.0  # N
-_ANKLE_X, _ANKLE_Y = -0.04, 0.09  # m from the pelvis in standing, while there are no sensors
+_ANKLE_X, _ANKLE_Y = -0.04, 0.09  # m from the pelvis to the ankles in standing, while there are no sensors
 
 # Gains of the standing controller, rad per m, per m/s, per rad: found by CMA-ES over stops of drawn people on
 # level ground and slopes, for feet that stay and are soon at rest. Sideways they must be soft: the hips move

@@ -1,7 +1,8 @@
 """Compiled: the ground under a walker's feet, the forces on them, and bounds on the torques that act on one.
 
 Laws in terms of one walker `s` (see state.py). A torque on a loaded foot that is kept within lever arms
-times the force on it leaves the pressure under the sole and the sole where it is. The gait is made for
+times the force on it leaves the pressure under the sole and the sole where it is; the more so, the more
+steadily the joint turns and the force acts over a control step. The gait is made for
 mid-walk: it would rock the foot on to its heel or toes and twist it when a walk begins or ends.
 """
 
@@ -19,7 +20,7 @@ from footfall.simulate.walker._elementwise import choose, clip
 STEEP = 0.065
 LIFTED = 0.2  # body weights; a foot that carries less may do what a swinging foot does
 # Lever arm (m) of what turns a loaded foot: a sixth of what friction can hold. Once the walker slows down or
-# has stopped a slope asks for more, or twice as many would fall when they stop across one of 8 %.
+# has stopped, a slope asks for more.
 TURN, TURN_ON_SLOPES = 0.01, 0.12
 
 _TOUCH_R, _TOUCH_L = SENSOR_TOUCH.start, SENSOR_TOUCH.start + 3
@@ -46,7 +47,10 @@ def loads(s):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def bound(s, ref, out, held, servo, joint, low, high):  # type: ignore[no-untyped-def]
-    """Clip a servo's targets in `out` (k, 17) so that its torque on a held foot is `low` to `high` (Nm)."""
+    """Clip a servo's targets in `out` (k, 17) so that its torque on a held foot is `low` to `high` (Nm).
+
+    So it is if the joint keeps the rate that it has at the start of the control step.
+    """
     count, rate = len(out), s.qvel[6 + joint]
     least, most = (low + ref.kv[servo] * rate) / ref.kp[servo], (high + ref.kv[servo] * rate) / ref.kp[servo]
     for i in range(count):

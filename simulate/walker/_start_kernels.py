@@ -40,9 +40,8 @@ _LEAN_S = 0.36  # after a stop
 _LANDED, _LATEST = 0.05, 0.3  # body weights on it, or so far into the next step, end the first one
 # Lever arms (m) of a loaded foot's torques over the force on it: its centre of pressure stays so far
 # before the ankle and so near its middle line.
-_BACK, _FRONT = 0.005, 0.10
-_BACK_AFTER_A_STOP, _FRONT_AFTER_A_STOP, _ASIDE_AFTER_A_STOP = 0.005, 0.12, 0.04
-_ASIDE = 0.02
+_BACK, _FRONT, _ASIDE = 0.005, 0.10, 0.02
+_FRONT_AFTER_A_STOP, _ASIDE_AFTER_A_STOP = 0.12, 0.04
 
 _PUSH_ASIDE = mask("hip_adduction_r") - mask("hip_adduction_l")
 _LET_FALL = mask("ankle")
@@ -58,10 +57,10 @@ def as_placed(s):  # type: ignore[no-untyped-def]
 def set_out(s, wish, step_phase):  # type: ignore[no-untyped-def]
     """Shift the weight of a standing walker that is to walk; True once the first step may begin."""
     begins = s.closing & (s.gate <= 0) & wish
-    s.left_first = choose(begins, s.left_stance, s.left_first)
+    s.left_stands = choose(begins, s.left_stance, s.left_stands)
     right, left = loads(s)
-    stepping = choose(s.left_first, right, left)
-    landed = (s.left_stance != s.left_first) & ((stepping > _LANDED * s.weight) | (step_phase > _LATEST))
+    stepping = choose(s.left_stands, right, left)
+    landed = (s.left_stance != s.left_stands) & ((stepping > _LANDED * s.weight) | (step_phase > _LATEST))
     s.setting_out = begins | (s.setting_out & np.logical_not(s.closing | landed))
     s.shift = choose(begins, s.shift + s.dt, choose(s.setting_out, s.shift, 0.0))
     unloaded = (s.shift > _SHORTEST_S) & (stepping < _UNLOADED * s.weight)
@@ -72,7 +71,7 @@ def set_out(s, wish, step_phase):  # type: ignore[no-untyped-def]
 @register_jitable
 def shifted(s, j):  # type: ignore[no-untyped-def]
     """Offset (rad) of servo j's target in standing that shifts the weight."""
-    aside = choose(as_placed(s), choose(s.left_first, -_SIDEWAYS, _SIDEWAYS), 0.0)
+    aside = choose(as_placed(s), choose(s.left_stands, -_SIDEWAYS, _SIDEWAYS), 0.0)
     return np.minimum(s.shift / _SHIFT_S, 1.0) * (aside * _PUSH_ASIDE[j] + _FORWARDS * _LET_FALL[j])
 
 
@@ -90,8 +89,7 @@ def hold_foot(s, ref, out, stands, load, servo, joint):  # type: ignore[no-untyp
     turn = (TURN + choose(placed, 0.0, TURN_ON_SLOPES * slope)) * force
     aside = choose(placed, _ASIDE, _ASIDE_AFTER_A_STOP) * force
     front = choose(placed, _FRONT, _FRONT_AFTER_A_STOP) * force
-    back = choose(placed, _BACK, _BACK_AFTER_A_STOP) * force
-    bound(s, ref, out, held, servo + ANKLE, joint + ANKLE, -front, -back)
+    bound(s, ref, out, held, servo + ANKLE, joint + ANKLE, -front, -_BACK * force)
     bound(s, ref, out, held, servo + SUBTALAR, joint + SUBTALAR, -aside, aside)
     bound(s, ref, out, lies, servo + ROTATION, joint + ROTATION, -turn, turn)
 
@@ -100,5 +98,5 @@ def hold_foot(s, ref, out, stands, load, servo, joint):  # type: ignore[no-untyp
 def hold_setting_out(s, ref, out):  # type: ignore[no-untyped-def]
     """Bound the servo targets `out` (k, 17) of who sets out, so that loaded feet lie still."""
     right, left = loads(s)
-    hold_foot(s, ref, out, np.logical_not(s.left_first), right, RIGHT, RIGHT_JOINT)
-    hold_foot(s, ref, out, s.left_first, left, LEFT, LEFT_JOINT)
+    hold_foot(s, ref, out, np.logical_not(s.left_stands), right, RIGHT, RIGHT_JOINT)
+    hold_foot(s, ref, out, s.left_stands, left, LEFT, LEFT_JOINT)

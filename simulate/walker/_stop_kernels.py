@@ -2,9 +2,9 @@
 
 Laws in terms of one walker `s` (see state.py), for all but steep slopes. Left alone, the ankle that brakes
 pulls the foot that the last step is taken from on to its heel, and then the gait's curves raise that heel. So
-the torques of a loaded foot are bounded (_foot_kernels), and the leg that steps takes the stand's pose at
-once. A body that does not move forwards any more, or that is far behind its feet, needs its heels: while it
-steps, only the twist is bounded then.
+the torques of a loaded foot are bounded (_foot_kernels), and the leg that this step is taken from takes the
+stand's pose at once. A body that does not move forwards any more, or that is far behind its feet, needs its
+heels: while it steps, only the twist is bounded then.
 """
 
 from __future__ import annotations
@@ -33,12 +33,13 @@ from footfall.simulate.walker._foot_kernels import (
 _FLAT, _LEAVING = 0.15, 0.25
 # While it steps: a body that moves forwards (m/s), and whose capture point is not so far behind (m).
 _MOVES, _FAR_BEHIND = 0.05, -0.115
-# Lever arms (m) of the ankle's torque over the force on the foot. Its pressure stays at most so far behind
-# the ankle: in the step, late in it, and of the foot that is leaving.
+# Lever arms (m) of the ankle's torque over the force on the foot, which hold its pressure about so far behind
+# the ankle at most: in the step, late in it, and of the foot that is leaving.
 _HEEL, _HEEL_LATE, _HEEL_LEAVING = 0.03, 0.01, 0.01
 _LATE = 0.68
-# In a stand: behind the ankle, and as much more as the capture point is farther behind; likewise before it,
-# or a body that its rear foot carries could not be held.
+# In a stand: behind the ankle, and as much more as the capture point is farther behind the standing point;
+# likewise before it, or a body that sways forwards could not be held. (The standing point is itself 4.6 cm
+# before the ankles.)
 _STANDING_HEEL, _BEHIND, _STANDING_TOES, _AHEAD = 0.01, -0.04, 0.095, 0.02
 _ANY = 9.0  # m, no bound
 POSE_SOONER, HOLD_SOONER = 12.0, 2.0  # how many times as fast that leg takes the stand's pose, and its hold
@@ -46,7 +47,10 @@ POSE_SOONER, HOLD_SOONER = 12.0, 2.0  # how many times as fast that leg takes th
 
 @register_jitable
 def leg_gate(s, gate, j, sooner):  # type: ignore[no-untyped-def]
-    """The gate of servo j: of the leg that the last step is taken from it closes so many times as fast."""
+    """The gate of servo j: of the leg that the last step is taken from it closes so many times as fast.
+
+    It jumps where a walker is told to walk on while it closes. No walk of a path does that.
+    """
     right, left = (j >= RIGHT) & (j < RIGHT + LEG), (j >= LEFT) & (j < LEFT + LEG)
     steps = s.closing & s.stopping & choose(s.left_stance, right, left)
     return choose(steps, np.maximum(1 - sooner * (1 - gate), 0.0), gate)

@@ -64,13 +64,13 @@ WALKER = np.dtype(
         ("spread", float),  # rad, apart
         ("out_right", float),  # rad, turned out
         ("out_left", float),
-        ("capture", float),  # m, of the capture point before the standing point
+        ("capture", float),  # m, of the capture point before the standing point (4.6 cm before the ankles)
         ("waiting", float),  # s, for which it has stepped on the spot because no stand could begin
         ("stopping", bool),  # wishes to stand and is nearly there, or stands; not on steep slopes
         # setting out
         ("weight", float),  # N
         ("setting_out", bool),  # from the wish to walk in a stand until the first step has landed
-        ("left_first", bool),  # the left foot stands through the first step
+        ("left_stands", bool),  # through the first step
         ("shift", float),  # s, for which the weight has been shifting
         # what observation, feedback and reward share: `posture`
         ("rotation", float, (3, 3)),  # body to world

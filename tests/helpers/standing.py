@@ -28,11 +28,11 @@ class Person:
 
 
 def stand(people: list[Person], variability: float = 1.0) -> Walkers:
-    """Everybody in a stand; as in a walk, the contact of those who stand or set out does not creep."""
+    """Everybody in a stand, on contact that never creeps (in a walk it may while the body is in mid-gait)."""
     n = len(people)
     models = [build_body(person.subject.build, timestep=STEP) for person in people]
     group = Walkers(models, stock_policy().feedback_gains, rng=np.random.default_rng(3))
-    group.up[:] = [(-forwards, -left, 1.0) for forwards, left in (person.grade for person in people)]
+    group.up[:] = [(forwards, left, 1.0) for forwards, left in (person.grade for person in people)]
     group.up[:] /= np.linalg.norm(group.up, axis=1)[:, None]
     for model, up in zip(models, group.up, strict=True):
         model.opt.gravity[:] = -GRAVITY * up
@@ -66,12 +66,13 @@ def walk_on(group: Walkers, seconds: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def held_state(rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Walkers of 700 N in any pose on any gentle or steep slope, and the loads of their feet (n, 2) N."""
+    """Walkers of 700 N in any pose and motion on any slope, and the loads of their feet (n, 2) N."""
     state = np.zeros(n, WALKER)
     state["weight"], state["phase"] = 700.0, rng.random(n)
     state["grade_forward"], state["grade_left"] = rng.normal(0, 0.05, (2, n))
     state["left_stance"] = rng.random(n) < 0.5
-    state["qpos"] = rng.normal(0, 0.2, state["qpos"].shape)
+    state["qpos"], state["dt"] = rng.normal(0, 0.2, state["qpos"].shape), 0.03
+    state["qvel"] = rng.normal(0, 2.0, state["qvel"].shape)
     touch = rng.uniform(0, 100, (n, 6))
     state["sensor"][:, SENSOR_TOUCH] = touch
     return state, touch.reshape(n, 2, 3).sum(axis=2)
@@ -82,14 +83,16 @@ def assert_held(
 ) -> None:
     """A law keeps torques within lever arms times the load, 140 N at least, and touches no other target.
 
+    The torques are those at the ends of three physics steps of joints that keep their rates.
+
     `bounds`: of each a servo, whose (n,) it is held, and the arms (m) below and above.
     """
     wanted = rng.normal(0, 0.4, (len(state), 3, N_SERVOS))
     found = wanted.copy()
     hold(Columns(state), REFERENCE.view(np.recarray)[0], np.moveaxis(found, 0, -1))
-    torque, asked = (
-        REFERENCE["kp"] * (one - state["qpos"][:, None, 7 + SERVO_JOINT]) for one in (found, wanted)
-    )
+    rate = state["qvel"][:, None, 6 + SERVO_JOINT]
+    angle = state["qpos"][:, None, 7 + SERVO_JOINT] + rate * 0.03 * np.array([[1], [2], [3]]) / 3
+    torque, asked = (REFERENCE["kp"] * (one - angle) - REFERENCE["kv"] * rate for one in (found, wanted))
     load = state["sensor"][:, SENSOR_TOUCH].reshape(-1, 2, 3).sum(axis=2)
     free = np.ones(found.shape, dtype=bool)
     for name, who, low, high in bounds:

@@ -42,19 +42,17 @@ def first_steps() -> list[tuple[Person, list]]:
 
 
 def test_a_loaded_foot_lies_still_until_the_first_step_has_landed(first_steps: list) -> None:
-    """Nobody falls, the feet turn and tip little, and nine of ten turn by less than 0.4 deg.
+    """Nobody falls, and the feet turn and tip little.
 
-    Measured over three draws of people (deg): twist 1.8 at most, 0.3 for nine of ten; toes-up 2.4 and
-    toes-down 2.0 at most. Without bounds on the torques toes-up is 3.9 to 4.2, without the shift of weight
-    3.1 to 3.2; nine of ten then turn by 0.5 to 1.0, and by 0.7 to 0.8 from the phase of a stop.
+    Measured over three draws of people (deg): twist 0.3, toes-up 2.4 and toes-down 2.1 at most. Without
+    bounds on the torques twist is 1.3, toes-up 3.9 to 4.4 at most.
     """
     moved = [one for _, both in first_steps for one in both]
     assert len(moved) == 60
 
-    assert max(one.twist for one in moved) < 2.5
+    assert max(one.twist for one in moved) < 0.8
     assert max(one.up for one in moved) < 2.8
-    assert max(one.down for one in moved) < 3.3
-    assert np.percentile([one.twist for one in moved], 90) < 0.4
+    assert max(one.down for one in moved) < 2.6
 
 
 def test_the_foot_that_is_to_lead_leads(first_steps: list) -> None:
@@ -128,8 +126,8 @@ def test_the_weight_shifts_before_a_walk_and_after_a_stop_the_body_only_falls_fo
     assert waits[1] == 12
 
 
-@pytest.mark.parametrize("left_first", [False, True])
-def test_setting_out_lasts_until_the_foot_that_steps_first_has_landed(left_first: bool) -> None:
+@pytest.mark.parametrize("left_stands", [False, True])
+def test_setting_out_lasts_until_the_foot_that_steps_first_has_landed(left_stands: bool) -> None:
     """Through its swing and, where it lands late, through three tenths of the next step at most."""
     cases = [  # whether the other foot stands by now, load on the foot that steps (N), phase of the step
         (False, 300.0, 0.1, True),
@@ -141,11 +139,11 @@ def test_setting_out_lasts_until_the_foot_that_steps_first_has_landed(left_first
         (True, 0.0, 0.35, False),
     ]
     state = np.zeros(len(cases), WALKER)
-    state["weight"], state["gate"], state["setting_out"], state["left_first"] = 700.0, 0.5, True, left_first
-    state["left_stance"] = [left_first != other for other, *_ in cases]
+    state["weight"], state["gate"], state["setting_out"], state["left_stands"] = 700.0, 0.5, True, left_stands
+    state["left_stance"] = [left_stands != other for other, *_ in cases]
     ball = SENSOR_TOUCH.start + 1
-    state["sensor"][:, ball if left_first else ball + 3] = [load for _, load, *_ in cases]
-    state["sensor"][:, ball + 3 if left_first else ball] = 400.0
+    state["sensor"][:, ball if left_stands else ball + 3] = [load for _, load, *_ in cases]
+    state["sensor"][:, ball + 3 if left_stands else ball] = 400.0
     set_out(Columns(state), np.ones(len(cases), dtype=bool), np.array([phase for *_, phase, _ in cases]))
     assert state["setting_out"].tolist() == [lasts for *_, lasts in cases]
 
@@ -160,12 +158,12 @@ def test_torques_of_a_loaded_foot_leave_its_pressure_under_it(seed: int) -> None
     """
     rng, n = np.random.default_rng(seed), 16
     state, load = held_state(rng, n)
-    state["setting_out"], state["left_first"] = rng.random((2, n)) < 0.7
+    state["setting_out"], state["left_stands"] = rng.random((2, n)) < 0.7
     state["stagger"] = np.where(rng.random(n) < 0.5, 0.0, 0.1)
     slope, placed = np.hypot(state["grade_forward"], state["grade_left"]), state["stagger"] == 0
     bounds = []
     for foot, side in enumerate("rl"):
-        stands = state["left_first"] == (side == "l")
+        stands = state["left_stands"] == (side == "l")
         loaded = load[:, foot] > 140
         bound_now = state["setting_out"] & (placed | (slope <= 0.065))
         held, lies = bound_now & (stands | (loaded & placed)), bound_now & (stands | loaded)

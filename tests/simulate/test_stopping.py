@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks.validation.starts import PLACES
-from footfall.models.body import N_SERVOS, SENSOR_TOUCH
+from footfall.models.body import N_SERVOS, SENSOR_TOUCH, build_body
 from footfall.models.gait import INDEX
-from footfall.models.subject import draw_subject
+from footfall.models.subject import Subject, draw_subject
 from footfall.simulate.learn import still_feet
 from footfall.simulate.walker._balance_kernels import act_all
 from footfall.simulate.walker._gait_kernels import REFERENCE, targets
@@ -22,9 +22,9 @@ from tests.helpers.standing import STEP, Person, assert_held, held_state, stand,
 
 @pytest.fixture(scope="module")
 def stops() -> list:
-    """Two drawn people at each place stop, stand and set out again: how their feet moved."""
+    """Six drawn people at each place stop, stand and set out again: how their feet moved."""
     rng = np.random.default_rng(12)
-    people = [Person(draw_subject(rng), grade) for grade, _ in product(PLACES.values(), range(2))]
+    people = [Person(draw_subject(rng), grade) for grade, _ in product(PLACES.values(), range(6))]
     group = stand(people)
     walk_on(group, 0.5)
     group.speed_goal[:] = rng.uniform(0.8, 1.4, len(people))
@@ -47,16 +47,16 @@ def stops() -> list:
 
 @pytest.mark.parametrize("kind", ["stop", "restart"])
 def test_loaded_feet_hardly_move_at_the_last_step_and_when_setting_out_again(stops: list, kind: str) -> None:
-    """Largest twist, toes-up and toes-down (deg): 1.2, 4.4, 3.9 at the last step, 0.9, 3.7, 0.3 at a restart.
+    """Nine of ten twist, tip toes-up and toes-down (deg) by less than 0.7, 3.0, 3.0; restarts 0.4, 2.4, 0.1.
 
-    With ankles that brake as they like toes-up is 8.0 at most, with a stand that turns its feet home and
-    restarts without bounds twist and toes-up are 8 and 14 for nine of ten.
+    At most by 1.5, 3.6, 4.8 and 0.6, 3.3, 0.7. With ankles that brake as they like nine of ten tip toes-up by
+    4.0 and one by 7.0, with no bounds they twist by 1.0, and without those of setting out they tip by 8.5.
     """
     found = np.array([(one.twist, one.up, one.down) for one in stops if one.kind == kind])
-    assert len(found) == 20
-    assert (found.max(axis=0) < {"stop": (2.0, 5.5, 5.0), "restart": (1.3, 5.0, 1.0)}[kind]).all()
+    assert len(found) == 60
+    assert (found.max(axis=0) < {"stop": (2.0, 5.0, 6.0), "restart": (1.3, 5.0, 1.3)}[kind]).all()
     nine_of_ten = np.percentile(found, 90, axis=0)
-    assert (nine_of_ten < {"stop": (1.5, 3.4, 3.8), "restart": (0.8, 3.5, 0.5)}[kind]).all()
+    assert (nine_of_ten < {"stop": (0.9, 3.4, 3.4), "restart": (0.6, 3.0, 0.3)}[kind]).all()
 
 
 def test_who_is_slow_and_wishes_to_stand_comes_to_rest_except_on_steep_slopes() -> None:
@@ -114,8 +114,11 @@ def test_torques_of_a_foot_that_comes_to_rest_leave_it_flat(seed: int) -> None:
     assert_held(hold_stopping, rng, state, bounds)
 
 
-def test_a_body_that_its_rear_foot_carries_can_be_held() -> None:
-    """Feet 11 cm one before the other: the pressure may come before the capture point, wherever it lies."""
+def test_a_body_that_sways_forwards_in_a_stand_can_be_held() -> None:
+    """The pressure may come before the capture point, wherever it lies.
+
+    That point is counted from the standing point, which is 4 mm behind the feet's centres of mass.
+    """
     capture = np.linspace(-0.04, 0.08, 25)
     state = np.zeros(len(capture), WALKER)
     state["stopping"] = state["closing"] = True
@@ -125,7 +128,8 @@ def test_a_body_that_its_rear_foot_carries_can_be_held() -> None:
     hold_stopping(Columns(state), REFERENCE.view(np.recarray)[0], found)
     ankle = INDEX["ankle_r"]
     before_the_ankle = -REFERENCE["kp"][0, ankle] * found[0, ankle] / 700.0
-    assert (before_the_ankle - 0.055 > capture + 0.015).all()
+    standing_point = build_body(Subject().build, timestep=STEP).body("foot_r").ipos[0] - 0.004
+    assert (before_the_ankle > capture + standing_point + 0.02).all()
 
 
 def closing(gate: float, n: int = 4) -> np.ndarray:
