@@ -62,7 +62,7 @@ class Habits:
     asymmetry: float = 0.0
 
 
-_LIMITS = {
+LIMITS = {
     "height_m": (1.50, 1.95),
     "mass_kg": (50.0, 100.0),
     "cadence": (0.94, 1.06),
@@ -104,7 +104,7 @@ class Subject:
     sole_time_s: float = SHOES["walking"]
 
     def __post_init__(self) -> None:
-        for key, (low, high) in _LIMITS.items():
+        for key, (low, high) in LIMITS.items():
             value = getattr(self, key)
             if not low - 1e-9 <= value <= high + 1e-9:
                 raise InputError(
@@ -162,7 +162,7 @@ def draw_subject(rng: np.random.Generator, name: str = "drawn") -> Subject:
     """
 
     def cut(key: str, value: float) -> float:
-        return float(np.clip(value, *_LIMITS[key]))
+        return float(np.clip(value, *LIMITS[key]))
 
     height = cut("height_m", rng.normal(1.70, 0.09))
     return Subject(

@@ -5,6 +5,7 @@ physics of the walks. The rate of the foot (deg/s, as large as it gets within ha
 the moment at which the foot has come down for good: median of the stands, and what nine of ten stay below.
 
 python -m benchmarks.validation.stops --people 20
+python -m benchmarks.validation.stops --extremes
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from rich.table import Table
 
 from benchmarks._common import options, out, run_all, write_json
 from footfall.models.route import Ground
-from footfall.models.subject import draw_subject
+from footfall.models.subject import LIMITS, Subject, draw_subject
 from footfall.runs import runs
 from footfall.scenarios.path import PathSpec, build_path
 from footfall.simulate.episode import FallError
@@ -64,15 +65,20 @@ class Stopped:
     rates: tuple[tuple[float, ...], ...]
 
 
-def plan(place: Place, seed: int) -> Plan:
-    """The walk of a drawn person."""
+def extreme_subject(rng: np.random.Generator) -> Subject:
+    """A person each of whose measures and habits is the least or the greatest that a subject may have."""
+    return Subject(**{key: float(rng.choice(limits)) for key, limits in LIMITS.items()})
+
+
+def plan(place: Place, seed: int, extreme: bool = False) -> Plan:
+    """The walk of a drawn person, or of an extreme one."""
     rng = stream(seed, "who stops")
     spec = PathSpec.model_validate({"elements": [{"kind": "straight", "length_m": METRES}]})
     return Plan(
         name=str(place),
         route=build_path(spec).route,
         ground=place.ground(),
-        subject=draw_subject(rng),
+        subject=extreme_subject(rng) if extreme else draw_subject(rng),
         gait=Gait(pace_m_s=float(rng.uniform(0.8, 1.6))),
         stops=(Stop(AT, PAUSE_S),),
         calibration_s=1.0,
@@ -94,19 +100,19 @@ def rates_in_stands(truth: Walk) -> tuple[tuple[float, ...], ...]:
     return tuple(found)
 
 
-def stop(job: tuple[Place, int]) -> Stopped:
+def stop(job: tuple[Place, int, bool]) -> Stopped:
     """Walk once."""
-    place, seed = job
+    place, seed, extreme = job
     try:
-        truth = walk(plan(place, seed))
+        truth = walk(plan(place, seed, extreme))
     except (FallError, StrayError):
         return Stopped(place, True, ())
     return Stopped(place, truth.meta["ends"] != "standing", rates_in_stands(truth))
 
 
-def report(found: Sequence[Stopped]) -> None:
+def report(found: Sequence[Stopped], people: str) -> None:
     """One row a place."""
-    table = Table(title="Stops of drawn people", title_justify="left")
+    table = Table(title=f"Stops of {people} people", title_justify="left")
     table.add_column("")
     for heading in ("walks", "falls", *(f"after {after:g} s" for after in AFTER_S)):
         table.add_column(heading, justify="right")
@@ -124,15 +130,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = options(__doc__)
     parser.add_argument("--people", type=int, default=20, help="at each place (default 20)")
     parser.add_argument("--first-seed", type=int, default=501)
+    parser.add_argument(
+        "--extremes", action="store_true", help="people at the limits of a subject, not drawn ones"
+    )
     chosen = parser.parse_args(arguments)
     places = [Place(0.0, ""), *(Place(grade, way) for grade, way in product(GRADES_PERCENT, WAYS))]
     jobs = [
-        (place, chosen.first_seed + chosen.people * number + person)
+        (place, chosen.first_seed + chosen.people * number + person, chosen.extremes)
         for number, place in enumerate(places)
         for person in range(chosen.people)
     ]
     found = run_all(stop, jobs, chosen.processes, "stops")
-    report(found)
+    report(found, "extreme" if chosen.extremes else "drawn")
     write_json(chosen.json, {"stops": [asdict(one) for one in found]})
 
 
