@@ -5,7 +5,7 @@ sigmas, flicker and random walks are so many times the nIMU's. Two crossings: wh
 good as the nIMU with HDR, and where HDR no longer helps the same sensor. Dots are the full chain. The nIMU's
 low-pass, its rounding and its accelerometers stay.
 
-python -m benchmarks.validation.without_hdr --figure without_hdr.png --page docs/studies/sensors.md
+python -m benchmarks.validation.without_hdr --figure without_hdr.png --page docs/without_hdr.md
 """
 
 from __future__ import annotations
@@ -53,6 +53,21 @@ def crossing(difference: np.ndarray) -> float | None:
     low, high = difference[after - 1], difference[after]
     share = -low / (high - low)
     return float(FACTORS[after - 1] * (FACTORS[after] / FACTORS[after - 1]) ** share)
+
+
+def deviations(medians: np.ndarray, full: np.ndarray) -> np.ndarray:
+    """By how much (share) the curve of (factors,) medians exceeds those of the full chain at `CHECKED`."""
+    return np.asarray(np.interp(np.log(CHECKED), np.log(FACTORS), medians) / full - 1)
+
+
+def accuracy(found: dict[str, dict[str, Any]]) -> Sheet:
+    """By factor and method: the least and the greatest deviation of the curves over the paths, in %."""
+    sheet = Sheet("accuracy", "Curves beside the full chain, least and greatest path", ["factor", *METHODS])
+    for at, factor in enumerate(CHECKED):
+        off = {name: [100 * made["off"][name][at] for made in found.values()] for name in METHODS}
+        cells = [f"{round(min(own)):+d} to {round(max(own)):+d} %" for own in off.values()]
+        sheet.rows.append([f"{factor:g}", *cells])
+    return sheet
 
 
 def scaled_sheet(base: Any, factor: float) -> dict[str, float]:
@@ -106,7 +121,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--units", type=int, default=20, help="on the walks of each scenario (default 20)")
     parser.add_argument("--walks", type=int, default=2, help="of each scenario (default 2)")
     parser.add_argument("--figure", type=Path, metavar="PNG", help="draw the curves there")
-    parser.add_argument("--page", type=Path, metavar="MD", help="fill its table")
+    parser.add_argument("--page", type=Path, metavar="MD", help="fill its tables")
     chosen = parser.parse_args(arguments)
     worn = Worn(walks=chosen.walks, units=chosen.units)
     found: dict[str, dict[str, Any]] = {}
@@ -126,22 +141,29 @@ def main(arguments: Sequence[str] | None = None) -> None:
         medians = {name: np.median(own, axis=1) for name, own in errors.items()}
         own = {name: np.median(full[i], axis=1) for i, name in enumerate(METHODS)}
         one = {name: float(np.interp(0.0, np.log(FACTORS), own_)) for name, own_ in medians.items()}
-        at = [int(np.argmin(np.abs(np.log(FACTORS / factor)))) for factor in CHECKED]
-        off = [abs(medians[name][at] / own[name] - 1).mean() for name in METHODS]
+        off = {name: deviations(medians[name], own[name]) for name in METHODS}
         made = found[scenario] = {
             "errors": errors,
             "full": {name: value.tolist() for name, value in own.items()},
+            "off": {name: value.tolist() for name, value in off.items()},
             "as_nimu": crossing(medians["pdr"] - one["hdr"]),
             "no_help": crossing(medians["pdr"] - medians["hdr"]),
         }
         told = ["-" if made[key] is None else f"{made[key]:.2g}" for key in ("as_nimu", "no_help")]
-        cells = [f"{one['pdr']:.1f}", f"{one['hdr']:.1f}", *told, f"{100 * np.mean(off):.0f} %"]
+        cells = [
+            f"{one['pdr']:.1f}",
+            f"{one['hdr']:.1f}",
+            *told,
+            f"{100 * np.abs([*off.values()]).mean():.0f} %",
+        ]
         sheet.rows.append([scenario, *cells])
-    sheet.show()
+    sheets = [sheet, accuracy(found)]
+    for one_sheet in sheets:
+        one_sheet.show()
     if chosen.figure is not None:
         draw(found, chosen.figure)
     if chosen.page is not None:
-        fill(chosen.page, by_name([sheet]))
+        fill(chosen.page, by_name(sheets))
     plain = {
         scenario: {**made, "errors": {name: own.tolist() for name, own in made["errors"].items()}}
         for scenario, made in found.items()
