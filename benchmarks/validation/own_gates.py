@@ -1,17 +1,21 @@
 """Footfall's own gates in full, and defects that they must find in 20 cases.
 
 Every file of gates that comes with Footfall is judged over all of its cases. Then gates are judged over 20
-units with a mistake in the methods (`_defects.py`), one after the other.
+units with a mistake in the methods (`_defects.py`), one after the other. Last, HDR with a stride time that is
+2 % too long against HDR itself: what its own scatter hides.
 
 python -m benchmarks.validation.own_gates
 """
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Sequence
+from pathlib import Path
 
 from benchmarks._common import options, out, write_json
 from benchmarks.validation._defects import DEFECTS
+from footfall.hdr.methods import METHODS
 from footfall.identity import plain
 from footfall.scenarios.report.gates import gate_report, verdict_line
 from footfall.scenarios.report.progress import showing
@@ -20,12 +24,31 @@ from footfall.scenarios.studies.gate import Judged, gate
 from footfall.scenarios.studies.gate_file import stock_gates
 
 FEW = 20
+HIDDEN = f"""
+[cases]
+scenario = "closed-loop"
+units = {FEW}
+
+[[gates]]
+name = "HDR with long strides is no worse than HDR"
+method = "long-strides"
+against = "sound"
+"""
 
 
 def judged(name: str, processes: int, **keys: object) -> Judged:
     """A file of gates, with progress."""
     with showing() as progress:
         return gate(name, workers=processes, on_progress=progress, **keys)  # type: ignore[arg-type]
+
+
+def hidden(processes: int) -> Judged:
+    """The first defect against sound HDR."""
+    methods = {"long-strides": DEFECTS[0].methods["hdr"], "sound": METHODS["hdr"]}
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "hidden.toml"
+        file.write_text(HIDDEN, encoding="utf-8")
+        return judged(str(file), processes, methods=methods)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -48,6 +71,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         lines = [verdict_line(verdict) for verdict in found if verdict.verdict == "fail"]
         table.add_row(name, "\n".join(lines) or "nothing")
     out.print(titled("Defects, and the gates that find them", table))
+    for part in gate_report(hidden(chosen.processes)):
+        out.print(part)
     write_json(
         chosen.json,
         {
