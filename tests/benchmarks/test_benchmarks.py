@@ -19,6 +19,7 @@ from footfall.errors import InputError
 from footfall.hdr.hdr import HdrParams, headings
 from footfall.hdr.method import Method
 from footfall.hdr.methods import METHODS
+from footfall.models.subject import LIMITS
 from footfall.scenarios.scenario import load_scenario
 from footfall.scenarios.trial import Trial, perform, setup
 from footfall.simulate.walk import TrueFootfalls
@@ -262,9 +263,15 @@ def test_a_stop_on_a_slope_is_one() -> None:
     ground = place.ground()
     assert np.gradient(ground.heights, axis=0) == pytest.approx(0.05, abs=1e-6)
     assert np.gradient(ground.heights, axis=1) == pytest.approx(0.0, abs=1e-6)
-    found = stops.stop((place, 1))
+    found = stops.stop((place, 1, False))
     assert not found.fell
     assert len(found.rates) >= 2
+
+
+def test_an_extreme_person_is_at_a_limit_in_everything() -> None:
+    people = [stops.plan(stops.Place(0.0, ""), seed, extreme=True).subject for seed in range(20)]
+    for key, limits in LIMITS.items():
+        assert {getattr(person, key) for person in people} == set(limits)
 
 
 def test_a_first_step_is_cut_where_a_foot_leaves_the_ground() -> None:
