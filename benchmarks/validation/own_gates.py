@@ -71,13 +71,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
         lines = [verdict_line(verdict) for verdict in found if verdict.verdict == "fail"]
         table.add_row(name, "\n".join(lines) or "nothing")
     out.print(titled("Defects, and the gates that find them", table))
-    for part in gate_report(hidden(chosen.processes)):
+    unseen = hidden(chosen.processes)
+    for part in gate_report(unseen):
         out.print(part)
     write_json(
         chosen.json,
         {
             "own": {name: [plain(verdict) for verdict in found] for name, found in own.items()},
             "defects": {name: [plain(verdict) for verdict in found] for name, found in defects.items()},
+            "hidden": [plain(verdict) for verdict in unseen],
         },
     )
 

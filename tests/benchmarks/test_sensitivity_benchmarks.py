@@ -42,6 +42,13 @@ def test_where_curves_cross():
     assert without_hdr.crossing(-np.ones(len(factors))) == pytest.approx(factors[-1])
 
 
+def test_curves_are_held_against_the_full_chain_at_its_own_factors() -> None:
+    """A curve that grows with the factor's logarithm is read between its points; 0.03 is none of them."""
+    curve, full = 10 + np.log(without_hdr.FACTORS), 10 + np.log(without_hdr.CHECKED)
+    found = without_hdr.deviations(curve, full / [1.0, 0.8, 1.25])
+    np.testing.assert_allclose(found, [0.0, -0.2, 0.25], atol=1e-12)
+
+
 def test_a_sheet_is_scaled_as_a_whole():
     base = documents("straight", imu="nimu", methods=["pdr"])
     values = without_hdr.scaled_sheet(base, 3.0)
